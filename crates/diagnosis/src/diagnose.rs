@@ -1,15 +1,13 @@
 //! The diagnosis from beginning to end: one phase after the other.
 
 use arm::Arm;
-use effects::Effect;
 
 use crate::data::Data;
 use crate::data::input::Input;
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnosisError;
 use crate::findings::conclusion::Conclusion;
-use crate::findings::identified::identified;
-use crate::next::{self, Next};
+use crate::next;
 use crate::options::{Options, Step};
 use crate::search::study::Study;
 use crate::selection::FinalFit;
@@ -30,48 +28,22 @@ pub fn diagnose(
     check(arm, inputs, options.cutoff.unwrap_or(CUTOFF))?;
     progress(Step::new(0.08, "filtering, rigid-body torques"));
     let data = Data::new(arm, inputs, options)?;
-    let mut study = Study::new(data, options).with_own_load(options);
-    let identified = identified(&mut study);
-    let last = FinalFit::new(&mut study, options, progress)?;
+    let study = Study::new(data, options).with_own_load(options);
+    let last = FinalFit::new(study, options, progress)?;
     progress(Step::new(0.78, "alternatives of the findings"));
-    let conclusion = Conclusion::new(&study, &last, &identified, inputs, options);
-    let next = next_experiment(&mut study, &last, &conclusion, (arm, options), progress)?;
-    let mut diagnosis = conclusion.diagnosis(arm, study);
+    let conclusion = Conclusion::new(&last, inputs, options);
+    let next = if options.next && conclusion.not_enough_data.is_empty() {
+        progress(Step::new(0.8, "next experiment"));
+        Some(next::propose(&last, &conclusion, arm, &options.known)?)
+    } else {
+        None
+    };
+    let mut diagnosis = conclusion.diagnosis(arm, last);
     if let Some(next) = next {
         diagnosis.report.next_experiment = Some(next.report);
         diagnosis.next = next.motion;
     }
     Ok(diagnosis)
-}
-
-/// The next experiment on `arm`, if `options` request one and there are enough data to propose it.
-fn next_experiment(
-    study: &mut Study,
-    last: &FinalFit,
-    conclusion: &Conclusion,
-    (arm, options): (&Arm, &Options),
-    progress: &dyn Fn(Step<'_>),
-) -> Result<Option<Next>, DiagnosisError> {
-    if !options.next {
-        return Ok(None);
-    }
-    if !conclusion.not_enough_data.is_empty() {
-        let remark = "no motion is proposed, because the recordings do not contain enough data";
-        study.data.motions.remarks.push(remark.to_owned());
-        return Ok(None);
-    }
-    progress(Step::new(0.8, "next experiment"));
-    let effects: Vec<Effect> = options.known.iter().cloned().chain(conclusion.effects()).collect();
-    let next = next::propose(
-        study,
-        &last.products,
-        &last.judged.named,
-        (arm, &effects),
-        &conclusion.findings,
-        &conclusion.not_observable,
-        &conclusion.unexplained,
-    )?;
-    Ok(Some(next))
 }
 
 /// Whether `inputs` can be diagnosed with `arm` at all.

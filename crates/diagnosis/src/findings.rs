@@ -4,7 +4,6 @@
 pub mod conclusion;
 pub mod dual_sensor;
 pub mod found;
-pub mod identified;
 pub mod inertials;
 pub mod locate;
 pub mod observability;

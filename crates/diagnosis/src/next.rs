@@ -11,14 +11,12 @@ use effects::{Detectability, Effect};
 use rayon::prelude::*;
 use torque::Reference;
 
+use crate::findings::conclusion::Conclusion;
 use crate::findings::observability;
-use crate::regression::fit::Products;
 use crate::report::{
     Confusable, Finding, NextExperiment, NotObservable, NotSeparated, Obstacle, Separation, Shows, Unexplained,
 };
-use crate::search::problem::Selection;
-use crate::search::study::Study;
-use crate::selection::rivals;
+use crate::selection::{FinalFit, rivals};
 use crate::thresholds::{COUNTED, MORE_DETECTABLE, SURELY_RESOLVED, WEIGHT_OF_SIZES};
 
 mod advice;
@@ -73,23 +71,20 @@ struct Tried {
     worth: f64,
 }
 
-/// Proposes a motion for the confusions of `findings` (each with its candidate) and for the effects `hidden`, which are not
-/// testable yet. It predicts nothing for joints that are `unexplained`. `effects` are all effects that are known or found,
-/// in addition to the model `arm`.
+/// Proposes a motion for the confusions of the findings, and for the effects that are not testable yet. It predicts nothing for
+/// joints that are not explained. `known` are the effects that are known in addition to the model `arm`.
 ///
 /// # Errors
 /// If the effects cannot be added to the model.
 pub fn propose(
-    study: &Study,
-    products: &Products,
-    selected: &Selection,
-    (arm, effects): (&Arm, &[Effect]),
-    findings: &[(Finding, Option<usize>)],
-    hidden: &[NotObservable],
-    unexplained: &[Unexplained],
+    last: &FinalFit,
+    conclusion: &Conclusion,
+    arm: &Arm,
+    known: &[Effect],
 ) -> Result<Next, torque::TorqueError> {
-    let (confusions, unpredicted) = confusions(study, selected, findings, unexplained);
-    let hidden = visible(study, selected, hidden);
+    let unexplained = &conclusion.unexplained;
+    let (confusions, unpredicted) = confusions(last, &conclusion.findings, unexplained);
+    let hidden = visible(last, &conclusion.not_observable);
     let columns = confusions
         .iter()
         .flat_map(|c| c.pair.instead.iter().flat_map(|(set, _)| set).chain(&c.pair.without));
@@ -104,10 +99,11 @@ pub fn propose(
         },
         motion: None,
     };
-    let Some(prospect) = Prospect::new(study, products, selected, columns.collect()) else {
+    let Some(prospect) = Prospect::new(last, columns.collect()) else {
         return Ok(nothing);
     };
-    let limits = Limits::new(&study.data, (arm, effects), unexplained.is_empty())?;
+    let effects: Vec<Effect> = known.iter().cloned().chain(conclusion.effects()).collect();
+    let limits = Limits::new(&last.study.data, (arm, &effects), unexplained.is_empty())?;
     let now = prospect.now();
     let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
     let attempt = |design: Design| -> Option<Tried> {
@@ -209,11 +205,11 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
 /// The alternatives of each finding, as sets of columns, and those without columns, for which nothing can be predicted. Findings
 /// without columns (a contact, a second encoder) are omitted.
 fn confusions(
-    study: &Study,
-    selected: &Selection,
+    last: &FinalFit,
     findings: &[(Finding, Option<usize>)],
     unexplained: &[Unexplained],
 ) -> (Vec<Confusion>, Vec<NotSeparated>) {
+    let (study, selected) = (&last.study, &last.judged.named);
     let columns_of = |set: &[usize]| -> Vec<usize> {
         let columns = set.iter().flat_map(|&c| study.candidates[c].columns.iter().copied());
         columns.collect::<BTreeSet<usize>>().into_iter().collect()
@@ -280,7 +276,8 @@ fn confusions(
 }
 
 /// The `hidden` effects whose size can be predicted without simulation: torque limits, and linear effects.
-fn visible<'a>(study: &Study, selected: &Selection, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
+fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
+    let (study, selected) = (&last.study, &last.judged.named);
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
         let joint = study.data.arm.joints().iter().position(|joint| joint.name == name)?;
@@ -312,7 +309,7 @@ fn visible<'a>(study: &Study, selected: &Selection, hidden: &'a [NotObservable])
             parameter,
             before: entry.would_be_seen_above.values().next().copied(),
             joint,
-            column: Some((*column, observability::needed(study, candidate))),
+            column: Some((*column, observability::needed(last, candidate))),
         })
     };
     hidden.iter().filter_map(of).collect()

@@ -1,13 +1,16 @@
 //! Phase 4, selection: the effects that keep their name, by size, evidence and prediction of held-out recordings.
 
+use effects::EffectKind;
 use rayon::prelude::*;
 
 use crate::error::DiagnosisError;
 use crate::options::{Options, Step};
 use crate::regression::fit::Products;
 use crate::search::plan;
+use crate::search::problem::Problem;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
+use crate::selection::predict::{augmented, exported};
 use crate::thresholds::MOST_REFUSED;
 
 pub mod bootstrap;
@@ -16,6 +19,7 @@ pub mod direction;
 pub mod final_fit;
 pub mod gain;
 pub mod hypothesis;
+pub mod identified;
 pub mod judge;
 pub mod naming;
 pub mod predict;
@@ -27,6 +31,8 @@ pub mod without_moment;
 
 /// The final fit: the named effects, their uncertainty, and the residuals.
 pub struct FinalFit {
+    /// The state in which search and selection ended: the columns about the arm with the named effects, and the background.
+    pub study: Study,
     /// The named effects and the unmodelled forms.
     pub judged: judge::Judged,
     /// The resampled coefficients of the named effects.
@@ -37,35 +43,61 @@ pub struct FinalFit {
     pub held: Option<Products>,
     /// The residuals of the named effects (N m or N): `[joint][row]`.
     pub residual: Vec<Vec<f64>>,
+    /// The residuals of the exported model (N m or N): `[joint][row]`.
+    pub exported: Vec<Vec<f64>>,
+    /// Each joint's held-out error (NRMSE) with full linear identification.
+    pub identified: Vec<Option<f64>>,
 }
 
 impl FinalFit {
-    /// The final fit of the effects that are searched, or of those that `options` request.
+    /// The final fit of the effects that are searched in `study`, or of those that `options` request.
     ///
     /// # Errors
     /// [`DiagnosisError::Wanted`], if a requested effect cannot be fitted.
-    pub fn new(study: &mut Study, options: &Options, progress: &dyn Fn(Step<'_>)) -> Result<Self, DiagnosisError> {
+    pub fn new(mut study: Study, options: &Options, progress: &dyn Fn(Step<'_>)) -> Result<Self, DiagnosisError> {
+        let identified = identified::identified(&study);
         let (judged, mut resampled) = match &options.only {
             Some(wanted) => {
                 progress(Step::new(0.3, "fitting the requested effects"));
-                let mut judged = hypothesis::fit(study, wanted)?;
-                let resampled = final_fit::as_given(study, &mut judged);
+                let mut judged = hypothesis::fit(&mut study, wanted)?;
+                let resampled = final_fit::as_given(&mut study, &mut judged);
                 (judged, resampled)
             }
-            None => found(study, progress),
+            None => found(&mut study, progress),
         };
-        resampled.allow_for_other_background(study, &judged.named);
-        let joints = (0..study.data.arm.dof()).into_par_iter();
-        let residual = joints
-            .map(|joint| predict::augmented(&study.data, &study.table, &judged.named.fit, joint))
-            .collect();
+        resampled.allow_for_other_background(&mut study, &judged.named);
+        let (data, table, fit) = (&study.data, &study.table, &judged.named.fit);
+        let joints = || (0..data.arm.dof()).into_par_iter();
         Ok(Self {
+            residual: joints().map(|joint| augmented(data, table, fit, joint)).collect(),
+            exported: joints().map(|joint| exported(data, table, fit, joint)).collect(),
             products: study.training_products(),
             held: study.held_products(),
+            identified,
             judged,
             resampled,
-            residual,
+            study,
         })
+    }
+
+    /// Whether an effect of this kind is named on `joint`.
+    pub fn names(&self, kind: &'static dyn EffectKind, joint: usize) -> bool {
+        self.judged.named.set.iter().any(|&c| {
+            let candidate = &self.study.candidates[c];
+            candidate.joint == Some(joint) && candidate.hypothesis.is(kind)
+        })
+    }
+
+    /// The start and the end of each named contact (s).
+    pub fn contacts(&self) -> Vec<[f64; 2]> {
+        let Study { candidates, table, .. } = &self.study;
+        let named = self.judged.named.set.iter();
+        named.filter_map(|&c| candidates[c].window(table)).collect()
+    }
+
+    /// The problem of the training recordings.
+    pub fn problem(&self) -> Problem<'_> {
+        self.study.problem(&self.products)
     }
 }
 

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use arm::Arm;
+use arm::{Arm, Joint};
 use effects::Effect;
 use effects::drive::JointElasticity;
-use rayon::prelude::*;
 
 use super::found::findings;
 use super::inertials::{Inertials, inertials};
@@ -14,6 +13,7 @@ use super::observability::not_testable;
 use super::traces::traces;
 use super::verdict::{beyond_limits, not_enough, poorly_predicted, unexplained, verdict, with_places};
 use super::{dual_sensor, sentences, transients};
+use crate::data::Data;
 use crate::data::input::Input;
 use crate::data::motion::SourceRecording;
 use crate::data::statistics::NORMAL_95;
@@ -24,11 +24,13 @@ use crate::report::{
     Unexplained, UsedPart,
 };
 use crate::search::own_load::OwnLoad;
-use crate::search::study::Study;
 use crate::selection::FinalFit;
-use crate::selection::predict::{errors, exported};
+use crate::selection::predict::errors;
 use crate::selection::{constant_torques, torque_constants};
 use crate::thresholds::LEAST_FOR_DYNAMICS;
+
+/// The note that the next experiment was requested in vain.
+const NO_MOTION: &str = "no motion is proposed, because the recordings do not contain enough data";
 
 /// The conclusions from the final fit.
 pub struct Conclusion {
@@ -48,47 +50,34 @@ pub struct Conclusion {
     changed: Option<Vec<String>>,
     different_load: Option<DifferentLoad>,
     traces: Traces,
-    /// Notes on torques that only the background explains.
-    unnamed: Vec<String>,
+    /// Notes on a motion that is not proposed, on torques that only the background explains, and on known effects.
+    notes: Vec<String>,
     /// Whether only the requested effects were fitted.
     is_requested: bool,
 }
 
 impl Conclusion {
-    /// The conclusions from the fit `last`; `identified` is each joint's held-out error with full linear identification.
-    pub fn new(
-        study: &Study,
-        last: &FinalFit,
-        identified: &[Option<f64>],
-        inputs: &[Input<'_>],
-        options: &Options,
-    ) -> Self {
+    /// The conclusions from the fit `last`.
+    pub fn new(last: &FinalFit, inputs: &[Input<'_>], options: &Options) -> Self {
         let FinalFit {
+            study,
             judged,
             resampled,
-            products,
-            held,
             residual,
+            ..
         } = last;
         let (data, table) = (&study.data, &study.table);
-        let mut findings = findings(study, products, held.as_ref(), judged, resampled);
-        let not_there = without_known(study, options, &mut findings);
-        let mut inertials = inertials(study, held.as_ref(), judged, resampled);
-        let is_contact_named = judged
-            .named
-            .set
-            .iter()
-            .any(|&c| study.candidates[c].window(table).is_some());
+        let mut findings = findings(last);
+        let not_there = without_known(data, options, &mut findings);
+        let mut inertials = inertials(last);
+        let is_contact_named = !last.contacts().is_empty();
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
-        let has_spring = |joint: usize| {
-            judged.named.set.iter().any(|&c| {
-                let candidate = &study.candidates[c];
-                candidate.joint == Some(joint) && candidate.hypothesis.is(&JointElasticity)
-            })
-        };
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
-            others.splice(0..0, dual_sensor::findings(data, inputs, has_spring));
+            others.splice(
+                0..0,
+                dual_sensor::findings(data, inputs, |joint| last.names(&JointElasticity, joint)),
+            );
             others.extend(transients.contact.clone());
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
@@ -98,25 +87,21 @@ impl Conclusion {
                 finding.probability = None;
             }
         }
-        let not_enough_data = not_enough(study, products);
+        let not_enough_data = not_enough(last);
         if !not_enough_data.is_empty() {
             // With too few data, no finding is supported.
             findings.clear();
         }
-        let by_exported: Vec<Vec<f64>> = (0..study.data.motions.dof)
-            .into_par_iter()
-            .map(|joint| exported(data, table, &judged.named.fit, joint))
-            .collect();
-        let fit = fit(study, [residual, &by_exported], identified);
-        let mut unexplained = unexplained(study, judged, &transients, residual);
-        poorly_predicted(study, judged, &fit, residual, !findings.is_empty(), &mut unexplained);
+        let fit = fit(last);
+        let located = locate(data, table, &data.nominal, residual);
+        let mut unexplained = unexplained(last, &transients, &located);
+        poorly_predicted(last, &fit, !findings.is_empty(), &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();
         }
-        let located = locate(data, table, &data.nominal, residual);
         if findings.is_empty() {
-            beyond_limits(study, &fit, &transients, &mut unexplained);
+            beyond_limits(&data.arm, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);
         } else if unexplained.iter().any(|open| open.depends_on.is_empty()) {
             let mut open = locate(data, table, residual, residual);
@@ -132,33 +117,34 @@ impl Conclusion {
                 .then(a.effect.cmp(b.effect))
                 .then(a.joint.cmp(&b.joint))
         });
-        let changed = study.data.motions.changed_at.map(|_| {
+        let changed = data.motions.changed_at.map(|_| {
             let new = findings.iter().filter(|(finding, _)| finding.since_before);
             new.map(|(finding, _)| sentences::changed(finding)).collect()
         });
         // If the change is named, nothing is to be added.
         let is_named = |(finding, _): &(Finding, _)| finding.since_before && finding.as_effect.spec().is_wrong_mass;
-        let different_load = study
-            .own_load
-            .as_ref()
+        let own_load = study.own_load.as_ref();
+        let different_load = own_load
             .filter(|_| !findings.iter().any(is_named))
-            .map(|load| different(load, &study.data.motions.sources));
+            .map(|load| different(load, &data.motions.sources));
         for (finding, _) in &mut findings {
             finding.sentence = sentences::of(finding, &fit);
         }
         let constants = constant_torques::corrections(study, &judged.named, resampled);
-        let unnamed = [
+        let no_motion = (options.next && !not_enough_data.is_empty()).then(|| NO_MOTION.to_owned());
+        let notes = [
+            no_motion,
             torque_constants::note_on_unnamed(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
-        let unnamed = unnamed.into_iter().flatten().chain(not_there).collect();
+        let notes = notes.into_iter().flatten().chain(not_there).collect();
         Self {
             located,
             constant_torques: constants,
-            unnamed,
+            notes,
             is_requested: options.only.is_some(),
-            traces: traces(study, judged, &findings, [residual, &by_exported]),
-            not_observable: not_named(not_testable(study, products, &judged.named), &findings),
+            traces: traces(last, &findings),
+            not_observable: not_named(not_testable(last), &findings),
             findings,
             inertials,
             not_enough_data,
@@ -178,14 +164,14 @@ impl Conclusion {
     }
 
     /// The diagnosis of `arm`, without a next experiment.
-    pub fn diagnosis(self, arm: &Arm, mut study: Study) -> Diagnosis {
+    pub fn diagnosis(self, arm: &Arm, last: FinalFit) -> Diagnosis {
+        let effects = self.effects().collect();
+        let motions = last.study.data.motions;
         let names = |held_out: bool| {
-            let sources = study.data.motions.sources.iter();
+            let sources = motions.sources.iter();
             let selected = sources.filter(|source| source.held_out == held_out);
             selected.map(|source| source.name.clone()).collect()
         };
-        let effects = self.effects().collect();
-        study.data.motions.remarks.extend(self.unnamed);
         let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
         let report = Report {
             schema: SCHEMA,
@@ -193,7 +179,7 @@ impl Conclusion {
             recordings: RecordingNames {
                 train: names(false),
                 held_out: names(true),
-                used_in_part: used_in_part(&study.data.motions.sources),
+                used_in_part: used_in_part(&motions.sources),
             },
             doubts: Vec::new(),
             warnings: Vec::new(),
@@ -217,8 +203,8 @@ impl Conclusion {
             traces: self.traces,
             effects,
             next: None,
-            remarks: std::mem::take(&mut study.data.motions.remarks),
-            trace: study.trace.take(),
+            remarks: [motions.remarks, self.notes].concat(),
+            trace: last.study.trace.take(),
         }
     }
 }
@@ -262,25 +248,24 @@ fn not_named(mut list: Vec<NotObservable>, findings: &[(Finding, Option<usize>)]
     list
 }
 
-/// How well each joint's torque is predicted; `residuals` are those of the augmented and of the exported model
-/// (`[joint][row]`, N m or N).
-fn fit(study: &Study, residuals: [&[Vec<f64>]; 2], identified: &[Option<f64>]) -> BTreeMap<String, JointFit> {
-    let (data, table) = (&study.data, &study.table);
-    let of = |(joint, residual): (usize, &Vec<f64>)| {
-        let of_exported = errors(data, table, joint, &residuals[1][joint]);
+/// How well each joint's torque is predicted.
+fn fit(last: &FinalFit) -> BTreeMap<String, JointFit> {
+    let (data, table) = (&last.study.data, &last.study.table);
+    let of = |(joint, described): (usize, &Joint)| {
+        let of_exported = errors(data, table, joint, &last.exported[joint]);
         let errors = JointFit {
-            held_out_nrmse_identified: identified[joint],
+            held_out_nrmse_identified: last.identified[joint],
             held_out_nrmse_exported: of_exported.held_out_nrmse_augmented,
-            ..errors(data, table, joint, residual)
+            ..errors(data, table, joint, &last.residual[joint])
         };
-        (study.data.arm.joints()[joint].name.clone(), errors)
+        (described.name.clone(), errors)
     };
-    residuals[0].iter().enumerate().map(of).collect()
+    data.arm.joints().iter().enumerate().map(of).collect()
 }
 
 /// Removes known gaps and springs between drive and link from `findings`: their torque depends on the links, which may be wrong, so
 /// that they are found again instead of subtracted. Returns remarks on those that are not found, or with another size.
-fn without_known(study: &Study, options: &Options, findings: &mut Vec<(Finding, Option<usize>)>) -> Vec<String> {
+fn without_known(data: &Data, options: &Options, findings: &mut Vec<(Finding, Option<usize>)>) -> Vec<String> {
     let is_found_again = |known: &&Effect| known.spec().is_simulated && known.of_torque(0).is_none();
     let mut remarks = Vec::new();
     for known in options.known.iter().filter(is_found_again) {
@@ -292,7 +277,7 @@ fn without_known(study: &Study, options: &Options, findings: &mut Vec<(Finding, 
             }
             None => remarks.push(sentences::not_subtracted(
                 known,
-                study.data.motions.cutoff < LEAST_FOR_DYNAMICS,
+                data.motions.cutoff < LEAST_FOR_DYNAMICS,
             )),
         }
     }

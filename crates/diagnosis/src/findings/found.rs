@@ -5,33 +5,26 @@ use std::collections::BTreeMap;
 use effects::arm::{InertialParameters, Payload};
 use effects::laws::ACCELERATION;
 
-use crate::regression::fit::Products;
+use crate::data::Data;
 use crate::report::{Confusable, Finding, Place};
-use crate::search::candidate::Hypothesis;
+use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
-use crate::search::study::Study;
-use crate::selection::bootstrap::Resampled;
+use crate::selection::FinalFit;
 use crate::selection::gain::held_out_gain;
-use crate::selection::judge::{Judged, Member};
+use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::rivals::{Named, Standing, standing};
 use crate::thresholds::LISTED_SHARE;
 
 /// The findings, each with its candidate.
-pub fn findings(
-    study: &Study,
-    products: &Products,
-    held: Option<&Products>,
-    judged: &Judged,
-    resampled: &Resampled,
-) -> Vec<(Finding, Option<usize>)> {
-    let problem = study.problem(products);
-    judged
+pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
+    let problem = last.problem();
+    last.judged
         .members
         .iter()
         .flat_map(|member| {
-            let standing = standing(study, &problem, &judged.named, member.candidate);
-            let list = finding(study, &problem, held, judged, resampled, member, &standing);
+            let standing = standing(&last.study, &problem, &last.judged.named, member.candidate);
+            let list = finding(last, &problem, member, &standing);
             list.into_iter()
                 .map(|finding| (finding, Some(member.candidate)))
                 .collect::<Vec<_>>()
@@ -39,15 +32,8 @@ pub fn findings(
         .collect()
 }
 
-fn finding(
-    study: &Study,
-    problem: &Problem<'_>,
-    held: Option<&Products>,
-    judged: &Judged,
-    resampled: &Resampled,
-    member: &Member,
-    standing: &Standing,
-) -> Vec<Finding> {
+fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &Standing) -> Vec<Finding> {
+    let study = &last.study;
     let candidate = &study.candidates[member.candidate];
     let joint_name = |joint: usize| study.data.arm.joints()[joint].name.clone();
     let share_by_joint: BTreeMap<String, f64> = member
@@ -57,19 +43,19 @@ fn finding(
         .filter(|(_, share)| **share > LISTED_SHARE)
         .map(|(joint, share)| (joint_name(joint), *share))
         .collect();
-    let place = place(study, candidate.hypothesis, member.candidate);
-    let gain = held_out_gain(problem, held, judged, member);
+    let place = place(last, candidate);
+    let gain = held_out_gain(problem, last.held.as_ref(), &last.judged, member);
     let confusable = |&(hypothesis, joint): &Named| Confusable {
         effect: hypothesis.name().unwrap_or_default(),
         joint: joint.map(joint_name),
     };
-    let last_link = as_last_link(study, member.candidate);
+    let last_link = as_last_link(last, member.candidate);
     let mut list = Vec::new();
-    for (k, named) in name(study, resampled, member.candidate).into_iter().enumerate() {
+    for (k, named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
         let share = if k == 0 {
             member.share()
         } else {
-            rotor_share(study, judged, member.candidate)
+            rotor_share(last, candidate)
         };
         // A mass that may be zero is that of no body: only moments are determined, which a link may have, too.
         let may_be_link = last_link.is_some() && may_be_nothing(named.effect.spec(), &named.parameters);
@@ -121,7 +107,8 @@ fn finding(
 
 /// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
 /// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
-fn as_last_link(study: &Study, candidate: usize) -> Option<Named> {
+fn as_last_link(last: &FinalFit, candidate: usize) -> Option<Named> {
+    let study = &last.study;
     let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
     let links = Hypothesis::of(&InertialParameters);
     let is_wrong = study.strengths.links.iter().any(|&rho| rho > 0.0);
@@ -129,42 +116,37 @@ fn as_last_link(study: &Study, candidate: usize) -> Option<Named> {
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.
-fn rotor_share(study: &Study, judged: &Judged, candidate: usize) -> f64 {
-    let columns = &study.candidates[candidate].columns;
-    let Some(joint) = study.candidates[candidate].joint else {
-        return 0.0;
-    };
-    let rotor: Vec<usize> = columns
-        .iter()
-        .copied()
-        .filter(|&column| study.table.terms[column].is(&ACCELERATION))
-        .collect();
-    let torque = study.table.torque(joint, &rotor, &judged.named.fit.values(&rotor));
-    study
-        .data
-        .share(joint, study.table.spread(joint, &study.data.fitted, &torque))
+fn rotor_share(last: &FinalFit, candidate: &Candidate) -> f64 {
+    let (data, table) = (&last.study.data, &last.study.table);
+    let Some(joint) = candidate.joint else { return 0.0 };
+    let mut rotor = candidate.columns.clone();
+    rotor.retain(|&column| table.terms[column].is(&ACCELERATION));
+    let torque = table.torque(joint, &rotor, &last.judged.named.fit.values(&rotor));
+    data.share(joint, table.spread(joint, &data.fitted, &torque))
 }
 
-fn place(study: &Study, hypothesis: Hypothesis, candidate: usize) -> Place {
-    if let Some([from, to]) = study.candidates[candidate].window(&study.table) {
-        let at = study.data.motions.recording_at(0.5 * (from + to));
+fn place(last: &FinalFit, candidate: &Candidate) -> Place {
+    let (Data { arm, motions, .. }, table) = (&last.study.data, &last.study.table);
+    if let Some([from, to]) = candidate.window(table) {
+        let at = motions.recording_at(0.5 * (from + to));
         // Refinement may have moved an end just beyond the end of the recording.
         let own = |time: f64| {
             at.map_or(time, |at| {
-                let [first, last] = study.data.motions.span(at);
-                study.data.motions.own_time(at, time.clamp(first, last))
+                let [first, last] = motions.span(at);
+                motions.own_time(at, time.clamp(first, last))
             })
         };
-        let recording = at.map(|at| study.data.motions.sources[at].name.clone());
+        let recording = at.map(|at| motions.sources[at].name.clone());
         return Place {
             time: vec![[own(from), own(to)]],
             recording,
             state: None,
         };
     }
-    let joint = &study.data.arm.joints()[study.candidates[candidate].joint.unwrap_or(0)];
+    let joint = &arm.joints()[candidate.joint.unwrap_or(0)];
+    let kind = candidate.hypothesis.kind.get();
     Place {
-        state: hypothesis.kind.get().region(&study.terms(candidate), joint.kind),
+        state: kind.region(&candidate.terms(table), joint.kind),
         ..Place::default()
     }
 }

@@ -8,12 +8,10 @@ use effects::arm::{INERTIAL_PARAMETER, InertialParameters, Payload, body};
 use effects::{Effect, EffectKind};
 
 use crate::regression::bodies::{PER_LINK, physical};
-use crate::regression::fit::Products;
 use crate::report::{Confusable, Finding, LinkInertials, Parameter};
 use crate::search::candidate::Hypothesis;
-use crate::search::study::{About, Study};
-use crate::selection::bootstrap::Resampled;
-use crate::selection::judge::Judged;
+use crate::search::study::About;
+use crate::selection::FinalFit;
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
 use crate::selection::special_forms::special_forms;
@@ -55,17 +53,24 @@ fn numbers(body: &Inertia) -> [f64; PER_LINK] {
 }
 
 /// The inertial parameters of the links by the background of the final fit.
-pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resampled: &Resampled) -> Inertials {
-    let strengths = &study.strengths;
-    let dof = study.data.arm.dof();
+pub fn inertials(last: &FinalFit) -> Inertials {
+    let FinalFit {
+        study,
+        judged,
+        resampled,
+        held,
+        ..
+    } = last;
+    let (data, table, strengths) = (&study.data, &study.table, &study.strengths);
+    let dof = data.arm.dof();
     if strengths.links.iter().all(|&rho| rho == 0.0) {
         return Inertials::default();
     }
     // The links with their scale errors, without payload, tilt and other effects.
-    let nominal: Vec<f64> = About::scaled(&study.data, &study.table, &judged.named.fit).inertial_parameters();
+    let nominal: Vec<f64> = About::scaled(data, table, &judged.named.fit).inertial_parameters();
     let place = |link: usize, parameter: usize| {
         let is_it = |&column: &usize| {
-            let term = study.table.terms[column];
+            let term = table.terms[column];
             term.is(&INERTIAL_PARAMETER) && term.of == [link, parameter]
         };
         resampled.columns.iter().position(is_it)
@@ -80,7 +85,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         let of = &nominal[link * PER_LINK..(link + 1) * PER_LINK];
         let own = |draw: &[f64]| body(&physical(of, &read(draw)));
         let estimate = own(&resampled.estimate);
-        let name = study.data.arm.joints()[link].name.clone();
+        let name = data.arm.joints()[link].name.clone();
         list.effects.push(InertialParameters::effect(name.clone(), &estimate));
         let columns: Vec<usize> = places.iter().flatten().map(|&place| resampled.columns[place]).collect();
         let values: Vec<f64> = places
@@ -89,10 +94,8 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
             .map(|&place| resampled.estimate[place])
             .collect();
         for (joint, share) in shares[link].iter_mut().enumerate() {
-            let torque = study.table.torque(joint, &columns, &values);
-            *share = study
-                .data
-                .share(joint, study.table.spread(joint, &study.data.fitted, &torque));
+            let torque = table.torque(joint, &columns, &values);
+            *share = data.share(joint, table.spread(joint, &data.fitted, &torque));
         }
         let prior = study.prior_variances(link);
         let determined = std::array::from_fn(|parameter| {
@@ -112,7 +115,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
             })
             .collect();
         let share = shares[link].iter().copied().fold(0.0, f64::max);
-        let nominal_mass = study.data.arm.joints()[link].inertia.mass;
+        let nominal_mass = data.arm.joints()[link].inertia.mass;
         let link = LinkInertials {
             nominal_mass,
             parameters,
@@ -121,7 +124,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         };
         list.links.insert(name, link);
     }
-    let (evidence, outside) = study.evidence_of_inertials(held, &judged.named);
+    let (evidence, outside) = study.evidence_of_inertials(held.as_ref(), &judged.named);
     if evidence < study.thresholds.least_evidence || outside.is_some_and(|outside| outside <= 0.0) {
         return list;
     }
@@ -135,26 +138,24 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
             let (columns, values): (Vec<usize>, Vec<f64>) = columns
                 .zip(&resampled.estimate)
                 .filter(|(column, _)| {
-                    let term = study.table.terms[*column];
+                    let term = table.terms[*column];
                     term.is(&INERTIAL_PARAMETER) && !apart.contains(&term.of[0])
                 })
                 .unzip();
-            let torque = study.table.torque(joint, &columns, &values);
-            study
-                .data
-                .share(joint, study.table.spread(joint, &study.data.fitted, &torque))
+            let torque = table.torque(joint, &columns, &values);
+            data.share(joint, table.spread(joint, &data.fitted, &torque))
         })
         .collect();
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
         let named = (0..dof).filter(|&joint| shares[joint] > LISTED_SHARE);
         named
-            .map(|joint| (study.data.arm.joints()[joint].name.clone(), shares[joint]))
+            .map(|joint| (data.arm.joints()[joint].name.clone(), shares[joint]))
             .collect()
     };
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
     // If hardly anything is explained, the background compensates a model that does not fit.
     let explained: Vec<bool> = (0..dof)
-        .map(|joint| errors_with(&study.data, &study.table, &judged.named.fit, joint).train_nrmse_augmented < PARTLY)
+        .map(|joint| errors_with(data, table, &judged.named.fit, joint).train_nrmse_augmented < PARTLY)
         .collect();
     // The margin of a link over the best other link (nats), and the links that explain nearly as much in its place, the
     // best first.
@@ -166,7 +167,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
             effect: InertialParameters.spec().name,
-            joint: Some(study.data.arm.joints()[other].name.clone()),
+            joint: Some(data.arm.joints()[other].name.clone()),
         });
         (margin, rivals.collect())
     };
@@ -175,7 +176,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         let forms = special_forms(study, &judged.named);
         let confusable = |(form, joint): (Hypothesis, Option<usize>)| Confusable {
             effect: form.name().unwrap_or_default(),
-            joint: joint.map(|joint| study.data.arm.joints()[joint].name.clone()),
+            joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
         };
         forms.into_iter().map(confusable).collect()
     };
@@ -195,7 +196,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         }
         let (margin, confusable_with) = joint.map_or_else(|| (evidence, everywhere()), instead);
         list.findings.push(Finding {
-            joint: joint.map(|joint| study.data.arm.joints()[joint].name.clone()),
+            joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
             parameters,
             probability: Some(probability(margin)),
             confusable_with,
@@ -210,7 +211,7 @@ pub fn inertials(study: &Study, held: Option<&Products>, judged: &Judged, resamp
         .iter()
         .any(|member| study.candidates[member.candidate].hypothesis.is(&Payload));
     for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
-        let name = &study.data.arm.joints()[link].name;
+        let name = &data.arm.joints()[link].name;
         let parameters = list
             .links
             .get(name)

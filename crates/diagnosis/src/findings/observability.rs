@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use effects::{Detectability, Kind};
 use rayon::prelude::*;
 
-use crate::regression::fit::Products;
+use crate::data::Data;
 use crate::report::NotObservable;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
-use crate::search::problem::Selection;
-use crate::search::study::Study;
+use crate::selection::FinalFit;
 use crate::thresholds::{BEYOND, HIDDEN};
 
 /// Why an effect is not testable whose torque others resemble.
@@ -43,20 +42,21 @@ impl Visibility {
     }
 }
 
-/// The effects that are not testable in addition to the selection `selected`.
-pub fn not_testable(study: &Study, products: &Products, selected: &Selection) -> Vec<NotObservable> {
-    let dof = study.data.motions.dof;
+/// The effects that are not testable in addition to those of the final fit.
+pub fn not_testable(last: &FinalFit) -> Vec<NotObservable> {
+    let (data, products) = (&last.study.data, &last.products);
+    let dof = data.motions.dof;
     let mut list: Vec<NotObservable> = (0..dof)
         .into_par_iter()
-        .flat_map_iter(|joint| on_joint(study, products, selected, joint))
-        .chain(on_arm(study, products, selected))
+        .flat_map_iter(|joint| on_joint(last, joint))
+        .chain(on_arm(last))
         .collect();
     for joint in 0..dof {
         if products.count[joint] > 0.0 {
             continue;
         }
         // A channel without torque has no scale.
-        let because = if study.data.scales.torque[joint] == 0.0 {
+        let because = if data.scales.torque[joint] == 0.0 {
             "the recordings hold no torque of the joint"
         } else {
             "the joint does not move in the training recordings"
@@ -64,7 +64,7 @@ pub fn not_testable(study: &Study, products: &Products, selected: &Selection) ->
         for kind in in_turn().filter(|kind| kind.spec().is_baseline) {
             list.push(NotObservable {
                 effect: kind.spec().name,
-                joint: Some(study.data.arm.joints()[joint].name.clone()),
+                joint: Some(data.arm.joints()[joint].name.clone()),
                 because: because.into(),
                 would_be_seen_above: BTreeMap::new(),
                 would_be_seen_below: BTreeMap::new(),
@@ -75,7 +75,8 @@ pub fn not_testable(study: &Study, products: &Products, selected: &Selection) ->
 }
 
 /// The effects on the whole arm whose torque wrong links, or the findings, resemble: a tool, a tilted base, a common factor.
-fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotObservable> {
+fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
+    let (study, selected) = (&last.study, &last.judged.named);
     let mut list = Vec::new();
     for kind in in_turn() {
         let Detectability::OfArm { columns } = kind.spec().detectability else {
@@ -95,12 +96,12 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
         };
         let needed = forms
             .iter()
-            .map(|form| needed(study, form))
+            .map(|form| needed(last, form))
             .fold(f64::INFINITY, f64::min);
         let least = |&column: &usize| {
-            let evidence = products.evidence_of(&study.table, &selected.fit, column);
+            let evidence = last.products.evidence_of(&study.table, &selected.fit, column);
             let size = (needed / evidence.max(1e-300)).sqrt();
-            let share = |joint| study.data.share(joint, size * spread(study, joint, column));
+            let share = |joint| study.data.share(joint, size * spread(last, joint, column));
             (size, (0..study.data.motions.dof).map(share).fold(0.0, f64::max), column)
         };
         let hardest = candidate.columns.iter().take(columns).map(least);
@@ -123,7 +124,8 @@ fn on_arm(study: &Study, products: &Products, selected: &Selection) -> Vec<NotOb
     list
 }
 
-fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usize) -> Vec<NotObservable> {
+fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
+    let (study, products, selected) = (&last.study, &last.products, &last.judged.named);
     let name = &study.data.arm.joints()[joint].name;
     if products.count[joint] == 0.0 {
         return Vec::new();
@@ -149,17 +151,17 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
         };
         match kind.spec().detectability {
             Detectability::Never | Detectability::OfArm { .. } => {}
-            Detectability::Limit { because } => add(because, None, Some(largest_torque(study, joint))),
+            Detectability::Limit { because } => add(because, None, Some(largest_torque(&study.data, joint))),
             Detectability::Sized {
                 because,
                 if_none,
                 is_seen_below,
             } => {
                 // Sizes in ascending order.
-                let mut sizes: Vec<(f64, bool)> = of(study, kind, joint)
+                let mut sizes: Vec<(f64, bool)> = of(&study.candidates, kind, joint)
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
-                        (size, is_seen(study, products, selected, candidate, joint))
+                        (size, is_seen(last, candidate, joint))
                     })
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -179,7 +181,7 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 is_of_first,
                 is_of_all_torque,
             } => {
-                let Some(candidate) = of(study, kind, joint).next() else {
+                let Some(candidate) = of(&study.candidates, kind, joint).next() else {
                     if let Some(because) = if_no_form {
                         add(because, None, None);
                     }
@@ -191,13 +193,13 @@ fn on_joint(study: &Study, products: &Products, selected: &Selection, joint: usi
                 };
                 let visibility = Visibility {
                     own: products.drop_of(&study.table, &selected.fit, column),
-                    spread: spread(study, joint, column),
+                    spread: spread(last, joint, column),
                     count: products.count[joint],
                     evidence: products.evidence[joint],
                     torque: study.data.scales.torque[joint],
                     least_share: study.thresholds.least_share,
                 };
-                let least = visibility.least(needed(study, candidate));
+                let least = visibility.least(needed(last, candidate));
                 let share = if is_of_all_torque {
                     least
                 } else {
@@ -231,47 +233,41 @@ fn in_turn() -> impl Iterator<Item = Kind> {
 }
 
 /// The largest torque of a joint in the training recordings (N m or N).
-fn largest_torque(study: &Study, joint: usize) -> f64 {
-    study
-        .data
-        .motions
-        .chunks
-        .iter()
-        .filter(|chunk| study.data.fitted[chunk.recording])
+fn largest_torque(data: &Data, joint: usize) -> f64 {
+    let chunks = data.motions.chunks.iter();
+    let fitted = chunks.filter(|chunk| data.fitted[chunk.recording]);
+    fitted
         .flat_map(|chunk| &chunk.tau[joint])
         .fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
 }
 
-fn of(study: &Study, kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {
-    study
-        .candidates
-        .iter()
-        .filter(move |candidate| candidate.hypothesis.kind == kind && candidate.joint == Some(joint))
+fn of(candidates: &[Candidate], kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {
+    let is_it = move |candidate: &&Candidate| candidate.hypothesis.kind == kind && candidate.joint == Some(joint);
+    candidates.iter().filter(is_it)
 }
 
 /// The evidence that a name needs here (nats); more where links are wrong and resemble it.
-pub fn needed(study: &Study, candidate: &Candidate) -> f64 {
-    let is_wrong = study.strengths.common() > 0.0;
+pub fn needed(last: &FinalFit, candidate: &Candidate) -> f64 {
+    let is_wrong = last.study.strengths.common() > 0.0;
     let beside_inertials = candidate.hypothesis.spec().least_beside_inertials.filter(|_| is_wrong);
-    let least = candidate.cost.max(study.thresholds.least_evidence);
+    let least = candidate.cost.max(last.study.thresholds.least_evidence);
     least.max(beside_inertials.unwrap_or(0.0))
 }
 
 /// Whether an effect with a coefficient of one would have been detected at its size.
-fn is_seen(study: &Study, products: &Products, selected: &Selection, candidate: &Candidate, joint: usize) -> bool {
+fn is_seen(last: &FinalFit, candidate: &Candidate, joint: usize) -> bool {
+    let (study, products) = (&last.study, &last.products);
     let column = candidate.columns[0];
-    let drop = products.drop_of(&study.table, &selected.fit, column);
+    let drop = products.drop_of(&study.table, &last.judged.named.fit, column);
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop / products.count[joint].max(1.0)).ln();
-    let share = study.data.share(joint, spread(study, joint, column));
-    nats > needed(study, candidate) && share > study.thresholds.least_share
+    let share = study.data.share(joint, spread(last, joint, column));
+    nats > needed(last, candidate) && share > study.thresholds.least_share
 }
 
 /// The standard deviation of a column on a joint's moving training rows.
-fn spread(study: &Study, joint: usize, column: usize) -> f64 {
-    let Some(place) = study.table.place[joint][column] else {
-        return 0.0;
-    };
-    study
-        .table
-        .spread(joint, &study.data.fitted, &study.table.joints[joint].x[place])
+fn spread(last: &FinalFit, joint: usize, column: usize) -> f64 {
+    let table = &last.study.table;
+    table.place[joint][column].map_or(0.0, |place| {
+        table.spread(joint, &last.study.data.fitted, &table.joints[joint].x[place])
+    })
 }

@@ -4,18 +4,12 @@ use effects::laws::ACCELERATION;
 use rayon::prelude::*;
 
 use crate::report::{Finding, Trace, Traces};
-use crate::search::study::Study;
-use crate::selection::judge::Judged;
+use crate::selection::FinalFit;
 
-/// All signals on the rows; `residuals` are those of the augmented and of the exported model (`[joint][row]`, N m or N).
-pub fn traces(
-    study: &Study,
-    judged: &Judged,
-    findings: &[(Finding, Option<usize>)],
-    residuals: [&[Vec<f64>]; 2],
-) -> Traces {
-    let dof = study.data.motions.dof;
-    let table = &study.table;
+/// All signals on the rows, and the torques of the `findings`, each with its candidate.
+pub fn traces(last: &FinalFit, findings: &[(Finding, Option<usize>)]) -> Traces {
+    let (data, table) = (&last.study.data, &last.study.table);
+    let dof = data.motions.dof;
     let torques: Vec<Vec<Vec<f64>>> = findings
         .par_iter()
         .map(|(finding, member)| {
@@ -23,18 +17,14 @@ pub fn traces(
                 return vec![Vec::new(); dof];
             };
             // A drive's inertia that is named with a spring or a gap has its own column.
-            let is_brought = finding.as_effect.kind() != study.candidates[member].hypothesis.kind;
-            let columns: Vec<usize> = study.candidates[member]
-                .columns
-                .iter()
-                .copied()
-                .filter(|&column| {
-                    let accelerates = table.terms[column].is(&ACCELERATION);
-                    let alone = study.candidates[member].columns.len() == 1;
-                    alone || accelerates == is_brought
-                })
-                .collect();
-            let values = judged.named.fit.values(&columns);
+            let candidate = &last.study.candidates[member];
+            let is_brought = finding.as_effect.kind() != candidate.hypothesis.kind;
+            let mut columns = candidate.columns.clone();
+            columns.retain(|&column| {
+                let accelerates = table.terms[column].is(&ACCELERATION);
+                candidate.columns.len() == 1 || accelerates == is_brought
+            });
+            let values = last.judged.named.fit.values(&columns);
             (0..dof)
                 .map(|joint| {
                     let acts = columns.iter().any(|&column| table.place[joint][column].is_some());
@@ -47,9 +37,9 @@ pub fn traces(
                 .collect()
         })
         .collect();
-    let times = study.data.motions.row_times();
+    let times = data.motions.row_times();
     let state = |pick: &dyn Fn(&crate::data::motion::Chunk, usize) -> f64| -> Vec<f64> {
-        let chunks = study.data.motions.chunks.iter();
+        let chunks = data.motions.chunks.iter();
         chunks
             .flat_map(|chunk| {
                 (0..chunk.rows())
@@ -66,8 +56,7 @@ pub fn traces(
     let q = each(&|chunk, joint, tick| chunk.q[joint][tick]);
     let qd = each(&|chunk, joint, tick| chunk.qd[joint][tick]);
     let qdd = each(&|chunk, joint, tick| chunk.qdd[joint][tick]);
-    let recordings = study
-        .data
+    let recordings = data
         .motions
         .sources
         .iter()
@@ -91,15 +80,15 @@ pub fn traces(
                 held_out: source.held_out,
                 time: times[rows.clone()]
                     .iter()
-                    .map(|&time| study.data.motions.own_time(recording, time))
+                    .map(|&time| data.motions.own_time(recording, time))
                     .collect(),
                 q: cut(&q),
                 qd: cut(&qd),
                 qdd: cut(&qdd),
-                tau: cut(&study.data.measured),
-                residual: cut(&study.data.nominal),
-                residual_augmented: cut(residuals[0]),
-                residual_exported: cut(residuals[1]),
+                tau: cut(&data.measured),
+                residual: cut(&data.nominal),
+                residual_augmented: cut(&last.residual),
+                residual_exported: cut(&last.exported),
                 effects: torques.iter().map(|torque| cut(torque)).collect(),
                 moving: table
                     .joints

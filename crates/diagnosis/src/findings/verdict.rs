@@ -2,23 +2,22 @@
 
 use std::collections::BTreeMap;
 
+use arm::Arm;
 use effects::Regressor;
 
 use crate::data::statistics::rms;
-use crate::findings::locate::locate;
 use crate::findings::sentences;
 use crate::findings::transients::Transients;
-use crate::regression::fit::Products;
 use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
-use crate::search::study::Study;
-use crate::selection::judge::Judged;
+use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, structured};
 use crate::thresholds::{
     LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
 };
 
-/// The structured residuals on each joint that no effect in the catalogue explains.
-pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, residual: &[Vec<f64>]) -> Vec<Unexplained> {
+/// The structured residuals on each joint that no effect in the catalogue explains; `located` are the places of the nominal residual.
+pub fn unexplained(last: &FinalFit, transients: &Transients, located: &[Located]) -> Vec<Unexplained> {
+    let FinalFit { study, judged, .. } = last;
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, Dependence)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
@@ -45,7 +44,6 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
             entry.1.push((*share, Regressor::Time.into()));
         }
     }
-    let located = locate(&study.data, &study.table, &study.data.nominal, residual);
     by_joint
         .into_iter()
         .map(|(joint, (share, mut on))| {
@@ -70,15 +68,14 @@ pub fn unexplained(study: &Study, judged: &Judged, transients: &Transients, resi
         .collect()
 }
 
-/// Adds the joints that are poorly predicted with the findings, whose residuals are `residual` (`[joint][row]`).
+/// Adds the joints that are poorly predicted with the findings.
 pub fn poorly_predicted(
-    study: &Study,
-    judged: &Judged,
+    last: &FinalFit,
     fit: &BTreeMap<String, JointFit>,
-    residual: &[Vec<f64>],
     has_findings: bool,
     unexplained: &mut Vec<Unexplained>,
 ) {
+    let study = &last.study;
     for (joint, name) in study.data.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
         let error = error(this);
@@ -86,7 +83,7 @@ pub fn poorly_predicted(
         // Without findings, a torque that looks like noise is no torque of the model either.
         let is_unrelated = !has_findings && error >= PARTLY;
         let is_poor = is_unrelated || error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
-        let in_training = structured_in_training(study, judged, &residual[joint], joint);
+        let in_training = structured_in_training(last, joint);
         if is_known || !(is_poor || structured(this).is_some() || in_training.is_some()) {
             continue;
         }
@@ -108,34 +105,30 @@ pub fn poorly_predicted(
 
 /// The error of a joint (NRMSE) on the training recordings, if it is large and structured. Rows in which a named contact acts do not
 /// count: contacts are short, and no model of them is exact.
-fn structured_in_training(study: &Study, judged: &Judged, residual: &[f64], joint: usize) -> Option<f64> {
-    let contacts: Vec<[f64; 2]> = judged
-        .named
-        .set
-        .iter()
-        .filter_map(|&c| study.candidates[c].window(&study.table))
-        .collect();
-    let times = study.data.motions.row_times();
+fn structured_in_training(last: &FinalFit, joint: usize) -> Option<f64> {
+    let (data, table, residual) = (&last.study.data, &last.study.table, &last.residual[joint]);
+    let contacts = last.contacts();
+    let times = data.motions.row_times();
     let mut counts = vec![false; residual.len()];
-    for row in study.table.moving_rows(joint, &study.data.fitted) {
+    for row in table.moving_rows(joint, &data.fitted) {
         counts[row] = contacts.iter().all(|[from, to]| times[row] < *from || times[row] > *to);
     }
     let rms = rms((0..residual.len()).filter(|&row| counts[row]).map(|row| residual[row]))?;
-    let is_structured = study.data.share(joint, rms) >= STRUCTURED_IN_TRAINING
-        && rms >= STRUCTURED_ABOVE_NOISE * study.data.noise[joint].sqrt()
-        && autocorrelation(&study.data, &study.table, residual, &counts) > REMEMBERS;
-    is_structured.then(|| study.data.share(joint, rms))
+    let is_structured = data.share(joint, rms) >= STRUCTURED_IN_TRAINING
+        && rms >= STRUCTURED_ABOVE_NOISE * data.noise[joint].sqrt()
+        && autocorrelation(data, table, residual, &counts) > REMEMBERS;
+    is_structured.then(|| data.share(joint, rms))
 }
 
 /// Keeps the residuals on joints whose error a diagnosis with findings would not call explained, and transients, for recordings
 /// without findings.
 pub fn beyond_limits(
-    study: &Study,
+    arm: &Arm,
     fit: &BTreeMap<String, JointFit>,
     transients: &Transients,
     unexplained: &mut Vec<Unexplained>,
 ) {
-    let joints = study.data.arm.joints();
+    let joints = arm.joints();
     unexplained.retain(|open| {
         let is_small = fit.get(&open.joint).is_some_and(|fit| error(fit) < STRUCTURED);
         !is_small
@@ -171,20 +164,17 @@ pub fn with_places(located: &[Located], unexplained: &mut [Unexplained]) {
 }
 
 /// The reasons why the recordings are not sufficient for a diagnosis; empty if they are.
-pub fn not_enough(study: &Study, products: &Products) -> Vec<String> {
+pub fn not_enough(last: &FinalFit) -> Vec<String> {
+    let (data, table, products) = (&last.study.data, &last.study.table, &last.products);
     let seconds = |joint: usize| -> f64 {
-        let counts = study.table.joints[joint]
-            .count
-            .iter()
-            .zip(&study.data.seconds)
-            .zip(&study.data.fitted);
+        let counts = table.joints[joint].count.iter().zip(&data.seconds).zip(&data.fitted);
         counts
             .filter(|(_, fitted)| **fitted)
             .map(|((count, seconds), _)| *count as f64 * seconds)
             .sum()
     };
-    let longest = (0..study.data.motions.dof).map(seconds).fold(0.0, f64::max);
-    let all: f64 = (study.table.rows.iter().zip(&study.data.seconds).zip(&study.data.fitted))
+    let longest = (0..data.motions.dof).map(seconds).fold(0.0, f64::max);
+    let all: f64 = (table.rows.iter().zip(&data.seconds).zip(&data.fitted))
         .filter(|(_, fitted)| **fitted)
         .map(|((rows, seconds), _)| rows.len() as f64 * seconds)
         .sum();

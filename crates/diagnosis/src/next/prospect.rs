@@ -12,9 +12,8 @@ use crate::regression::columns::values;
 use crate::regression::fit::{Products, evidence_rate};
 use crate::regression::table::{Moving, Table};
 use crate::search::physics::is_possible;
-use crate::search::problem::Selection;
-use crate::search::study::{About, Study};
-use crate::selection::rivals;
+use crate::search::study::About;
+use crate::selection::{FinalFit, rivals};
 
 /// The pause between the last recording and the motion (s).
 const PAUSE: f64 = 10.0;
@@ -33,8 +32,7 @@ pub struct Pair {
 
 /// The recordings reduced to some columns, to which a motion can be added.
 pub struct Prospect<'a> {
-    study: &'a Study,
-    selected: &'a Selection,
+    last: &'a FinalFit,
     about: About,
     nominal: Vec<f64>,
     /// Indices of the study's columns, in ascending order.
@@ -64,27 +62,23 @@ pub struct Outlook {
 }
 
 impl<'a> Prospect<'a> {
-    /// The recordings fitted in `study`, reduced to `columns`; `None` if there are none.
-    pub fn new(
-        study: &'a Study,
-        products: &Products,
-        selected: &'a Selection,
-        mut columns: Vec<usize>,
-    ) -> Option<Self> {
-        columns.extend(&selected.fit.columns);
+    /// The recordings of the fit `last`, reduced to its columns and to `columns`; `None` if none is fitted.
+    pub fn new(last: &'a FinalFit, mut columns: Vec<usize>) -> Option<Self> {
+        let (data, table, fit) = (&last.study.data, &last.study.table, &last.judged.named.fit);
+        columns.extend(&fit.columns);
         columns.sort_unstable();
         columns.dedup();
-        let terms: Vec<Term> = columns.iter().map(|&column| study.table.terms[column]).collect();
+        let terms: Vec<Term> = columns.iter().map(|&column| table.terms[column]).collect();
         let fitted = || {
-            let chunks = study.data.motions.chunks.iter();
-            chunks.filter(|chunk| study.data.fitted[chunk.recording])
+            let chunks = data.motions.chunks.iter();
+            chunks.filter(|chunk| data.fitted[chunk.recording])
         };
         let template = fitted().max_by_key(|chunk| chunk.ticks())?;
         // A sum of slow sines needs no finer grid.
         let (period, stride) = (COARSER as f64 * template.period, template.stride.div_ceil(COARSER));
         let needs = |term: &Term| term.law.needs_derivatives;
-        let dof = study.data.motions.dof;
-        let end = study.data.motions.chunks.iter().map(|chunk| chunk.time(chunk.ticks()));
+        let dof = data.motions.dof;
+        let end = data.motions.chunks.iter().map(|chunk| chunk.time(chunk.ticks()));
         let mut torque = vec![[0.0; 3]; dof];
         let mut speed = vec![[0.0; 2]; dof];
         for chunk in fitted() {
@@ -94,14 +88,13 @@ impl<'a> Prospect<'a> {
             }
         }
         Some(Self {
-            study,
-            selected,
-            about: About::new(&study.data, &study.table, &selected.fit),
-            nominal: study.data.arm.inertial_parameters(),
+            last,
+            about: About::new(data, table, fit),
+            nominal: data.arm.inertial_parameters(),
             derivatives: terms.iter().any(needs),
-            grid: (period, Kernel::new(study.data.motions.cutoff, period), stride),
+            grid: (period, Kernel::new(data.motions.cutoff, period), stride),
             bare: Table::bare(terms, dof),
-            old: products.picked(&study.table, &columns),
+            old: last.products.picked(table, &columns),
             columns,
             template: template.recording,
             start: end.fold(0.0, f64::max) + PAUSE,
@@ -114,16 +107,16 @@ impl<'a> Prospect<'a> {
     pub fn now(&self) -> Outlook {
         Outlook {
             products: self.old.clone(),
-            torque: self.study.data.scales.torque.clone(),
-            weights: self.selected.fit.weights.clone(),
-            largest: vec![0.0; self.study.data.motions.dof],
+            torque: self.last.study.data.scales.torque.clone(),
+            weights: self.last.judged.named.fit.weights.clone(),
+            largest: vec![0.0; self.last.study.data.motions.dof],
         }
     }
 
     /// The recordings with the motion of `reference`.
     pub fn with(&self, reference: &Reference) -> Outlook {
-        let study = self.study;
-        let dof = study.data.motions.dof;
+        let (data, thresholds) = (&self.last.study.data, &self.last.study.thresholds);
+        let (dof, fit) = (data.motions.dof, &self.last.judged.named.fit);
         let mut chunk = self.chunk(reference);
         let (About { arm, offset, .. }, derivatives) = (&self.about, self.derivatives);
         let rigid = Rigid::with_derivatives(arm, &self.nominal, offset, &chunk, derivatives);
@@ -142,36 +135,36 @@ impl<'a> Prospect<'a> {
             let mut power = self.speed[j];
             powers(&mut power, &chunk.qd[j], &chunk.qdd[j], chunk.period);
             tempo.push((power[1] / power[0].max(1e-300)).sqrt() / std::f64::consts::TAU);
-            rates.push(evidence_rate(study.data.motions.tempo[j]));
+            rates.push(evidence_rate(data.motions.tempo[j]));
         }
         let seconds = chunk.period * chunk.stride as f64;
-        let mut source = study.data.motions.sources[self.template].clone();
+        let mut source = data.motions.sources[self.template].clone();
         (source.held_out, source.has_own_load) = (false, false);
         let motions = Motions {
             changed_at: None,
             dof,
             chunks: vec![chunk],
             sources: vec![source],
-            cutoff: study.data.motions.cutoff,
+            cutoff: data.motions.cutoff,
             tempo: tempo.clone(),
-            one_clock: study.data.motions.one_clock,
-            begins: study.data.motions.begins,
+            one_clock: data.motions.one_clock,
+            begins: data.motions.begins,
             remarks: Vec::new(),
         };
         let terms = self.bare.terms.clone();
         let table = Table::new(
             &motions,
             &[rigid],
-            &study.data.scales,
+            &data.scales,
             terms,
             &self.about.carried,
             Moving::ThroughReversals,
         );
-        let new = Products::new(&table, |_| true, &[seconds], &tempo, &study.data.floor);
+        let new = Products::new(&table, |_| true, &[seconds], &tempo, &data.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
         // The residual of the motion is predicted to be as large as that of the recordings.
         let variance: Vec<f64> = (0..dof)
-            .map(|j| self.selected.fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
+            .map(|j| fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
             .collect();
         let evidence = (0..dof)
             .map(|j| {
@@ -180,19 +173,19 @@ impl<'a> Prospect<'a> {
             })
             .collect();
         let floor = (0..dof)
-            .map(|j| study.data.noise[j] + (study.thresholds.tolerance * torque[j]).powi(2))
+            .map(|j| data.noise[j] + (thresholds.tolerance * torque[j]).powi(2))
             .collect();
         Outlook {
             products: self.old.joined(&new, &variance, evidence, floor),
             torque,
-            weights: self.selected.fit.weights.clone(),
+            weights: fit.weights.clone(),
             largest,
         }
     }
 
     /// The motion on the grid of the recordings. It is slow enough to pass the first filter unchanged.
     fn chunk(&self, reference: &Reference) -> Chunk {
-        let dof = self.study.data.motions.dof;
+        let dof = self.last.study.data.motions.dof;
         let (period, kernel, stride) = self.grid.clone();
         let ticks = (DURATION / period) as usize + 1;
         let zeros = || vec![vec![0.0; ticks]; dof];
@@ -221,13 +214,13 @@ impl<'a> Prospect<'a> {
 
     /// The torques that the motion needs by the findings.
     fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
-        let fit = &self.selected.fit;
+        let fit = &self.last.judged.named.fit;
         let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
-        let scales = &self.study.data.scales;
+        let scales = &self.last.study.data.scales;
         let mut free = rigid.tau.clone();
         let mut own = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
-            let term = self.study.table.terms[column];
+            let term = self.last.study.table.terms[column];
             // A motion within a torque limit never exceeds it, so that the column is zero.
             if is_carried(term) || term.law.cuts {
                 continue;
@@ -266,11 +259,11 @@ impl<'a> Prospect<'a> {
             let places = self.places(columns);
             outlook.products.fit(&self.bare, &places, &outlook.weights)
         };
-        let with = fit(&self.selected.fit.columns).loss;
+        let with = fit(&self.last.judged.named.fit.columns).loss;
         let without = fit(&pair.without).loss;
         let mut rivals: Vec<_> = pair.instead.iter().map(|(set, added)| (fit(set), set, added)).collect();
         rivals.sort_by(|a, b| a.0.loss.total_cmp(&b.0.loss));
-        let study = self.study;
+        let study = &self.last.study;
         let possible = rivals.into_iter().find_map(|(mut fit, set, added)| {
             fit.columns.clone_from(set);
             let is_possible = |&c: &usize| is_possible(&study.candidates[c], &study.table, &fit, &study.data.arm);
@@ -283,7 +276,7 @@ impl<'a> Prospect<'a> {
     /// The detectability of columns in addition to the findings, each on a joint.
     pub fn visibility(&self, outlook: &Outlook, wanted: &[(usize, usize)]) -> Vec<Visibility> {
         let products = &outlook.products;
-        let columns = self.places(&self.selected.fit.columns);
+        let columns = self.places(&self.last.judged.named.fit.columns);
         let fit = products.fit(&self.bare, &columns, &outlook.weights);
         let of = |&(joint, column): &(usize, usize)| {
             let place = self.columns.binary_search(&column).ok()?;
@@ -293,7 +286,7 @@ impl<'a> Prospect<'a> {
                 count: products.count[joint],
                 evidence: products.evidence[joint],
                 torque: outlook.torque[joint],
-                least_share: self.study.thresholds.least_share,
+                least_share: self.last.study.thresholds.least_share,
             })
         };
         wanted.iter().filter_map(of).collect()

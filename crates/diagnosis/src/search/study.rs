@@ -214,15 +214,13 @@ impl Study {
         self.prior.at(&self.strengths)
     }
 
-    /// Inner products over the recordings that `selected` selects, without background.
-    fn bare_products(&self, selected: impl Fn(usize) -> bool) -> Products {
-        Products::new(
-            &self.table,
-            selected,
-            &self.data.seconds,
-            &self.data.motions.tempo,
-            &self.data.floor,
-        )
+    /// Inner products of a table over the training recordings, or over the held-out ones, without background.
+    fn bare_products(&self, table: &Table, held_out: bool) -> Products {
+        let Data {
+            seconds, floor, fitted, ..
+        } = &self.data;
+        let selected = |recording: usize| fitted[recording] != held_out;
+        Products::new(table, selected, seconds, &self.data.motions.tempo, floor)
     }
 
     /// The problem with these products.

@@ -5,11 +5,13 @@ use rayon::prelude::*;
 
 use super::about::inertial_changes;
 use super::{About, Study};
+use crate::data::Data;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::rms;
 use crate::regression::background::Prior;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
+use crate::regression::strengths::Strengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::problem::Selection;
 use crate::thresholds::{MOST_BODIES, SIMULATED_ANEW};
@@ -28,45 +30,39 @@ impl Study {
         self.about(fit, kept, true).unwrap_or_default()
     }
 
-    /// Leaves only the background's columns and `columns` in the table, with the rows that are `moving`; returns the table before.
-    pub fn reduce_table(&mut self, columns: &[usize], moving: Moving) -> Table {
-        let reduced = self.reduced_table(columns, moving);
-        std::mem::replace(&mut self.table, reduced)
-    }
-
-    /// A table with the background's columns and `columns` only, with the rows that are `moving`.
-    fn reduced_table(&self, columns: &[usize], moving: Moving) -> Table {
+    /// A table with the background's columns, then `columns`, then those of `more`, with the rows that are `moving`; and its products
+    /// over the training recordings beside a background of these `strengths`.
+    pub fn reduced(
+        &self,
+        columns: &[usize],
+        more: Vec<Term>,
+        moving: Moving,
+        strengths: &Strengths,
+    ) -> (Table, Products) {
+        let Data {
+            motions, rigid, scales, ..
+        } = &self.data;
         let background = 0..self.prior.terms().len();
         let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
-        let mut empty = Table::new(
-            &self.data.motions,
-            &self.data.rigid,
-            &self.data.scales,
-            Vec::new(),
-            &[],
-            moving,
-        );
+        let mut empty = Table::new(motions, rigid, scales, Vec::new(), &[], moving);
         // The torques of this table contain those of the effects in the arm about which it is evaluated.
         for (joint, known) in empty.joints.iter_mut().zip(&self.table.joints) {
             joint.y.clone_from(&known.y);
         }
-        empty.with_columns_of(&self.table, &columns)
+        let mut table = empty.with_columns_of(&self.table, &columns);
+        if !more.is_empty() {
+            table.add(motions, rigid, scales, more, None);
+        }
+        let products = self
+            .bare_products(&table, false)
+            .with_background(self.prior.at(strengths));
+        (table, products)
     }
 
     /// `columns` and, after them, `more` terms fitted to the training recordings at given weights of the joints. The fit's columns are
     /// those of the background, and then the others in this order.
     pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> Fit {
-        let mut table = self.reduced_table(columns, self.moving);
-        table.add(&self.data.motions, &self.data.rigid, &self.data.scales, more, None);
-        let is_fitted = |recording: usize| self.data.fitted[recording];
-        let products = Products::new(
-            &table,
-            is_fitted,
-            &self.data.seconds,
-            &self.data.motions.tempo,
-            &self.data.floor,
-        );
-        let products = products.with_background(self.background());
+        let (table, products) = self.reduced(columns, more, self.moving, &self.strengths);
         let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
         products.solve(&table, &columns, weights)
     }

@@ -87,7 +87,7 @@ impl Study {
         if let Some(products) = self.stored(|list| list.bare[place].clone()) {
             return products;
         }
-        let products = self.bare_products(|recording| self.data.fitted[recording] != held_out);
+        let products = self.bare_products(&self.table, held_out);
         self.stored(|list| list.bare[place] = Some(products.clone()));
         products
     }

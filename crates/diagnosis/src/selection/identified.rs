@@ -15,11 +15,12 @@ const FREE: f64 = 3.0;
 
 /// The held-out error (NRMSE) of each joint with least squares on all inertial parameters, and on viscous and Coulomb friction,
 /// drive inertia and a constant of every joint. It is fitted to, and measured on, the rows of the final fit, which include those near
-/// reversals.
-pub fn identified(study: &mut Study) -> Vec<Option<f64>> {
+/// reversals. `study` is that before the search, with the columns about the nominal arm.
+pub fn identified(study: &Study) -> Vec<Option<f64>> {
+    let dof = study.data.arm.dof();
     let strengths = Strengths {
-        links: vec![FREE; study.data.arm.dof()],
-        ..Strengths::none(study.data.arm.dof())
+        links: vec![FREE; dof],
+        ..Strengths::none(dof)
     };
     let is_part = |&candidate: &usize| {
         let hypothesis = study.candidates[candidate].hypothesis;
@@ -30,13 +31,10 @@ pub fn identified(study: &mut Study) -> Vec<Option<f64>> {
     let parts = (0..study.candidates.len()).filter(is_part);
     let columns = parts.flat_map(|candidate| study.candidates[candidate].columns.clone());
     let columns: Vec<usize> = columns.collect();
-    let searched = study.reduce_table(&columns, Moving::ThroughReversals);
-    let products = study.products_at(&strengths);
-    let selected: Vec<usize> = (study.table.terms.len() - columns.len()..study.table.terms.len()).collect();
-    let fit = products.fit(&study.table, &selected, &products.first_weights());
-    let fit = products.reweighted(&study.table, fit);
-    let of = |joint| errors_with(&study.data, &study.table, &fit, joint).held_out_nrmse_augmented;
-    let list = (0..study.data.arm.dof()).map(of).collect();
-    study.table = searched;
-    list
+    let (table, products) = study.reduced(&columns, Vec::new(), Moving::ThroughReversals, &strengths);
+    let selected: Vec<usize> = (table.terms.len() - columns.len()..table.terms.len()).collect();
+    let fit = products.fit(&table, &selected, &products.first_weights());
+    let fit = products.reweighted(&table, fit);
+    let of = |joint| errors_with(&study.data, &table, &fit, joint).held_out_nrmse_augmented;
+    (0..dof).map(of).collect()
 }
