@@ -1,10 +1,13 @@
 //! The fit of a recording's torques by the URDF's model with corrected columns.
 
-use arm::{Arm, Workspace};
+use arm::Arm;
 
-use super::correction::Correction;
+use super::correction::{Correction, JointReading};
 use super::smooth::Smooth;
 use super::thresholds::{EXPLAINED_BY_MODEL, LEAST_RESIDUAL, NEEDS_MODEL};
+
+/// The variance of a signal beside others, relative to its whole variance, below which it is not distinguished from them.
+const LEAST_OF_ITS_OWN: f64 = 1e-9;
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
 pub struct Fit {
@@ -34,13 +37,6 @@ impl Fit {
     }
 }
 
-/// The standard deviation of `values`, with their number as the divisor.
-fn deviation(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
-}
-
 /// The fit of the torques by the model of `arm` with a `correction` of the columns.
 pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
     let turned;
@@ -50,23 +46,19 @@ pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
     } else {
         arm
     };
-    let dof = arm.dof();
     let count = smooth.len();
     let reading = correction.reading(arm);
-    // The model along the corrected motion.
-    let mut workspace = Workspace::new(arm);
-    let mut model = vec![vec![0.0; count]; dof];
-    let mut tau = vec![0.0; dof];
-    for k in 0..count {
-        let pick =
-            |signal: &[Vec<f64>]| -> Vec<f64> { reading.iter().map(|r| r.scale * signal[r.position][k]).collect() };
-        let (mut q, qd, qdd) = (pick(&smooth.q), pick(&smooth.qd), pick(&smooth.qdd));
-        q.iter_mut().zip(&reading).for_each(|(q, r)| *q += r.offset);
-        arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut tau);
-        for (joint, tau) in tau.iter().enumerate() {
-            model[joint][k] = *tau;
-        }
-    }
+    // The corrected motion and the model along it, joint after joint.
+    let read = |signal: &[Vec<f64>], with_offset: bool| -> Vec<f64> {
+        let of = |r: &JointReading| {
+            let (scale, offset) = (r.scale, if with_offset { r.offset } else { 0.0 });
+            signal[r.position].iter().map(move |value| scale * value + offset)
+        };
+        reading.iter().flat_map(of).collect()
+    };
+    let (q, qd, qdd) = (read(&smooth.q, true), read(&smooth.qd, false), read(&smooth.qdd, false));
+    let mut model = vec![0.0; q.len()];
+    arm.inverse_dynamics_batch(&q, &qd, &qdd, &mut model);
     let mut fit = Fit {
         residual_share: Vec::new(),
         factor: Vec::new(),
@@ -74,89 +66,92 @@ pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
         size: Vec::new(),
     };
     for (joint, read) in reading.iter().enumerate() {
-        let speed: Vec<f64> = smooth.qd[read.position].iter().map(|qd| read.scale * qd).collect();
+        let own = joint * count..(joint + 1) * count;
+        let (model, speed) = (&model[own.clone()], &qd[own]);
+        let direction = read.scale.signum();
+        let dry: Vec<f64> = smooth.dry[read.position].iter().map(|dry| direction * dry).collect();
         let measured: Vec<f64> = smooth.tau[read.torque]
             .iter()
             .map(|tau| read.torque_sign * tau)
             .collect();
-        let friction = Friction::new(&speed);
-        let (without, _) = friction.fitted(None, &measured);
-        let (residual_share, factor) = friction.fitted(Some(&model[joint]), &measured);
+        let products = Products::new([model, &dry, speed, &measured]);
+        let (without, _) = products.fitted(&[]);
+        let (residual_share, factor) = products.fitted(&[MODEL]);
         let explains = factor >= 0.0;
         fit.residual_share.push(if explains { residual_share } else { without });
         fit.factor.push(factor);
         fit.without.push(without);
-        fit.size
-            .push(deviation(&measured) / deviation(&model[joint]).max(f64::MIN_POSITIVE));
+        let [model, measured] = [MODEL, MEASURED].map(|signal| (products.centred[signal][signal] / count as f64).sqrt());
+        fit.size.push(measured / model.max(f64::MIN_POSITIVE));
     }
     fit
 }
 
-/// Dry and viscous friction of a joint, of unit size.
-struct Friction<'a> {
-    dry: Vec<f64>,
-    speed: &'a Vec<f64>,
+/// The signals of a joint: the model's torque, dry and viscous friction of unit size, and the measured torque.
+const SIGNALS: usize = 4;
+const MODEL: usize = 0;
+const DRY: usize = 1;
+const VISCOUS: usize = 2;
+const MEASURED: usize = 3;
+
+/// Inner products of the signals of a joint.
+struct Products {
+    /// Of their deviations from their means.
+    centred: [[f64; SIGNALS]; SIGNALS],
+    /// Of the velocity with dry and with viscous friction, means included.
+    with_speed: [f64; 2],
 }
 
-impl<'a> Friction<'a> {
-    fn new(speed: &'a Vec<f64>) -> Self {
-        let top = speed.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
-        let dry = speed.iter().map(|speed| (speed / (0.02 * top)).tanh()).collect();
-        Self { dry, speed }
-    }
-
-    /// The residual share of `measured` after a fit of friction and of the model's torque, if one is given, and the factor of the model.
-    /// Friction that drives the joint is impossible, and is left out.
-    fn fitted(&self, model: Option<&Vec<f64>>, measured: &[f64]) -> (f64, f64) {
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let factor_first = |columns: &[&Vec<f64>]| {
-            let all: Vec<&Vec<f64>> = columns.iter().copied().chain(model).collect();
-            regress(&all, measured).1
-        };
-        let dry = factor_first(&[&self.dry, self.speed]);
-        let viscous = factor_first(&[self.speed, &self.dry]);
-        let power = dry * dot(&self.dry, self.speed) + viscous * dot(self.speed, self.speed);
-        let friction: &[&Vec<f64>] = if power >= 0.0 { &[&self.dry, self.speed] } else { &[] };
-        let all: Vec<&Vec<f64>> = model.into_iter().chain(friction.iter().copied()).collect();
-        let (residual_share, factor) = regress(&all, measured);
-        (residual_share, if model.is_some() { factor } else { 0.0 })
-    }
-}
-
-/// The residual variance of `measured` after a least-squares fit of `columns` and an offset, over its variance, and the
-/// factor of the first column (Gram-Schmidt orthogonalisation with the first column last).
-fn regress(columns: &[&Vec<f64>], measured: &[f64]) -> (f64, f64) {
-    let centred = |values: &[f64]| -> Vec<f64> {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        values.iter().map(|value| value - mean).collect()
-    };
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let mut rest = centred(measured);
-    let total = dot(&rest, &rest);
-    if total <= 0.0 {
-        return (1.0, 0.0);
-    }
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut factor = 0.0;
-    for column in columns.iter().rev() {
-        let mut column = centred(column);
-        let before = dot(&column, &column);
-        for other in &basis {
-            let share = dot(&column, other) / dot(other, other);
-            column
-                .iter_mut()
-                .zip(other)
-                .for_each(|(value, other)| *value -= share * other);
+impl Products {
+    fn new(signals: [&[f64]; SIGNALS]) -> Self {
+        let count = signals[MEASURED].len();
+        let means = signals.map(|signal| signal.iter().sum::<f64>() / count.max(1) as f64);
+        let mut centred = [[0.0; SIGNALS]; SIGNALS];
+        for k in 0..count {
+            let values: [f64; SIGNALS] = std::array::from_fn(|signal| signals[signal][k] - means[signal]);
+            for (row, a) in centred.iter_mut().zip(values) {
+                row.iter_mut().zip(values).for_each(|(sum, b)| *sum += a * b);
+            }
         }
-        let after = dot(&column, &column);
-        factor = 0.0;
-        if after > 1e-9 * before && after > 0.0 {
-            factor = dot(&rest, &column) / after;
-            rest.iter_mut()
-                .zip(&column)
-                .for_each(|(value, column)| *value -= factor * column);
-            basis.push(column);
+        let with_speed = |a: usize| centred[a][VISCOUS] + count as f64 * means[a] * means[VISCOUS];
+        Self {
+            centred,
+            with_speed: [DRY, VISCOUS].map(with_speed),
         }
     }
-    (dot(&rest, &rest) / total, factor)
+
+    /// The residual share of the measured torque after a fit of friction and of the signals in `model`, and the factor of the first of
+    /// these. Friction that drives the joint is impossible, and is left out.
+    fn fitted(&self, model: &[usize]) -> (f64, f64) {
+        let factor_of_first = |friction: [usize; 2]| self.regress(&[&friction, model].concat()).1;
+        let (dry, viscous) = (factor_of_first([DRY, VISCOUS]), factor_of_first([VISCOUS, DRY]));
+        let power = dry * self.with_speed[0] + viscous * self.with_speed[1];
+        let friction: &[usize] = if power >= 0.0 { &[DRY, VISCOUS] } else { &[] };
+        self.regress(&[model, friction].concat())
+    }
+
+    /// The residual variance of the measured torque after a least-squares fit of `signals` and an offset, over its variance, and the
+    /// factor of the first signal: they are eliminated from the inner products one by one, the first one last. A signal that hardly
+    /// differs from those eliminated before is left out.
+    fn regress(&self, signals: &[usize]) -> (f64, f64) {
+        let total = self.centred[MEASURED][MEASURED];
+        if total <= 0.0 {
+            return (1.0, 0.0);
+        }
+        let mut left = self.centred;
+        let mut factor = 0.0;
+        for &signal in signals.iter().rev() {
+            let row = left[signal];
+            let own = row[signal];
+            factor = 0.0;
+            if own > LEAST_OF_ITS_OWN * self.centred[signal][signal] && own > 0.0 {
+                factor = row[MEASURED] / own;
+                for (other, values) in left.iter_mut().enumerate() {
+                    let share = row[other] / own;
+                    values.iter_mut().zip(row).for_each(|(value, row)| *value -= share * row);
+                }
+            }
+        }
+        (left[MEASURED][MEASURED].max(0.0) / total, factor)
+    }
 }

@@ -9,6 +9,8 @@ use crate::turns::range;
 const HALF_SPAN: f64 = 0.04;
 /// The number of instants.
 const INSTANTS: usize = 800;
+/// The part of a joint's largest speed below which its direction of motion is not certain.
+const RESTING: f64 = 0.02;
 
 /// Motion and torque at instants, `signal[joint][instant]`; the joints are in the requested order.
 pub struct Smooth {
@@ -16,6 +18,14 @@ pub struct Smooth {
     pub qd: Vec<Vec<f64>>,
     pub qdd: Vec<Vec<f64>>,
     pub tau: Vec<Vec<f64>>,
+    /// Dry friction of unit size: the sign of the velocity, smooth about zero.
+    pub dry: Vec<Vec<f64>>,
+}
+
+/// The sign of the `speeds`, smooth below a part of the largest one.
+fn dry(speeds: &Vec<f64>) -> Vec<f64> {
+    let top = speeds.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
+    speeds.iter().map(|speed| (speed / (RESTING * top)).tanh()).collect()
 }
 
 /// Weights of a least-squares parabola over 2 `side` + 1 ticks: value, slope (1/s) and bend (1/s²).
@@ -71,9 +81,11 @@ impl Smooth {
             };
             joints.iter().map(of).collect()
         };
+        let qd = sample(&parabola.slope, &regular.q);
         Self {
             q: sample(&parabola.value, &regular.q),
-            qd: sample(&parabola.slope, &regular.q),
+            dry: qd.iter().map(dry).collect(),
+            qd,
             qdd: sample(&parabola.bend, &regular.q),
             tau: sample(&parabola.value, &regular.tau),
         }
