@@ -167,6 +167,10 @@ impl Conclusion {
     pub fn diagnosis(self, arm: &Arm, last: FinalFit) -> Diagnosis {
         let effects = self.effects().collect();
         let motions = last.study.data.motions;
+        // A channel that holds no torque has no relative error.
+        let has_held_out = motions.sources.iter().any(|source| source.held_out);
+        let mut fit = self.fit;
+        fit.retain(|_, fit| !has_held_out || fit.held_out_nrmse_nominal.is_some());
         let names = |held_out: bool| {
             let sources = motions.sources.iter();
             let selected = sources.filter(|source| source.held_out == held_out);
@@ -188,7 +192,7 @@ impl Conclusion {
             not_observable: self.not_observable,
             not_enough_data: self.not_enough_data,
             located: self.located,
-            fit: self.fit,
+            fit,
             changed: self.changed,
             different_load: self.different_load,
             inertials: self.inertials.links,
