@@ -44,6 +44,8 @@ pub struct Background {
     pub log_det: f64,
     /// The evidence that its strengths must bring (nats).
     pub cost: f64,
+    /// The strength of friction.
+    pub friction: f64,
 }
 
 impl Prior {
@@ -180,6 +182,7 @@ impl Prior {
             precision,
             log_det,
             cost: strengths.cost(),
+            friction: strengths.friction,
         })
     }
 }

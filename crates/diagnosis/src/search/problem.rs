@@ -1,5 +1,7 @@
 //! The joint search: which candidates together explain the residual.
 
+use effects::laws::{SIGN, VELOCITY};
+use effects::{Law, Term};
 use rayon::prelude::*;
 
 use crate::data::Data;
@@ -7,7 +9,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_possible;
-use crate::thresholds::{KNOWN_DRIVE, MOST_SELECTED, TELLING_DRIVES, Thresholds};
+use crate::thresholds::{FRICTION_PRIOR, KNOWN_DRIVE, MOST_SELECTED, TELLING_DRIVES, Thresholds};
 
 mod exchange;
 mod exclusion;
@@ -145,6 +147,28 @@ impl Problem<'_> {
             || !set
                 .iter()
                 .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
+    }
+
+    /// The residual sums of squares of `fit` on the recordings of `held`. Their friction may differ from the fit's, as much as the
+    /// background lets that of a training recording differ.
+    pub fn held_out_rss(&self, held: &Products, fit: &Fit) -> Vec<f64> {
+        let rss = held.rss(self.table, &fit.columns, &fit.coefficients);
+        let scale = FRICTION_PRIOR * self.products.friction_strength();
+        if scale == 0.0 {
+            return rss;
+        }
+        let scales = &self.data.scales;
+        let column = |law: &'static Law, joint: usize| {
+            let term = Term::on(law, joint);
+            self.table.terms.iter().position(|known| *known == term)
+        };
+        let own_friction = |joint: usize| {
+            let level = scale * scales.torque[joint];
+            let slope = level / scales.speed[joint].max(1e-300);
+            Some([(column(&SIGN, joint)?, level), (column(&VELOCITY, joint)?, slope)])
+        };
+        let own_friction: Vec<_> = (0..rss.len()).map(own_friction).collect();
+        held.rss_beside(self.table, (fit, &rss), &own_friction)
     }
 
     /// Whether an effect may be a part of the background. It then need not predict better than the background, but it costs

@@ -42,7 +42,7 @@ pub fn predicting(problem: &Problem<'_>, held: &Products, mut selected: Selectio
 /// a joint's worse than the nominal model's; with the rule that removes it.
 pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> Option<(&'static str, usize)> {
     let table = problem.table;
-    let rss = |selected: &Selection| held.rss(table, &selected.fit.columns, &selected.fit.coefficients);
+    let rss = |selected: &Selection| problem.held_out_rss(held, &selected.fit);
     let with = rss(selected);
     // The increase of the held-out loss without each.
     let gains: Vec<(usize, f64, Vec<f64>)> = (0..selected.set.len())
