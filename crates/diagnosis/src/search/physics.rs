@@ -7,6 +7,7 @@ use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::thresholds::LARGEST_TORQUE_SHARE;
+use crate::thresholds::UNEVEN;
 
 /// The number of smaller sizes that are tried: a thousandth of a size, a millionth, and so on.
 const SMALLER: i32 = 6;
@@ -111,9 +112,14 @@ fn is_too_large(size: f64, is_possible: impl Fn(f64) -> bool) -> bool {
     !is_possible(size) && smaller.any(is_possible)
 }
 
-/// Whether the coefficient of a simulated effect is near one.
-pub fn is_at_its_size(candidate: &Candidate, fit: &Fit) -> bool {
-    !candidate.hypothesis.spec().is_simulated || UNIT.contains(&fit.coefficient(candidate.columns[0]))
+/// Whether the coefficient of a simulated effect is near one. The torque of a link behind a spring or a gap is proportional to its
+/// inertia, which may be wrong by `links` in the URDF (relative), and a resonance whose frequency is wrong reduces the coefficient.
+pub fn is_at_its_size(candidate: &Candidate, table: &Table, fit: &Fit, links: f64) -> bool {
+    let column = candidate.columns[0];
+    let is_of_link = table.terms[column].law.link_side.is_some();
+    let factor = if is_of_link { 1.0 + UNEVEN * links } else { 1.0 };
+    let coefficient = fit.coefficient(column);
+    !candidate.hypothesis.spec().is_simulated || (UNIT.start() / factor..=UNIT.end() * factor).contains(&coefficient)
 }
 
 /// The root mean square of a candidate's torque over that of the torque to be explained, on moving rows.

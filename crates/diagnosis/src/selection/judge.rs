@@ -62,7 +62,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
     let is_unmodelled = |&c: &usize| study.candidates[c].hypothesis.name().is_none();
     let had_unmodelled = selected.set.iter().any(is_unmodelled);
     let off = |selected: &Selection| -> Option<usize> {
-        let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &selected.fit);
+        let links = study.strengths.common();
+        let is_off = |&c: &usize| !is_at_its_size(&study.candidates[c], &study.table, &selected.fit, links);
         selected.set.iter().copied().find(is_off)
     };
     while let Some(off) = off(&selected) {
