@@ -15,6 +15,8 @@ pub enum Systematic {
     OfForm,
     /// The usual error and that of the links' inertias in the URDF, for a parameter that is proportional to them.
     OfArm,
+    /// As [`Self::OfArm`], for a parameter that the recordings only bound from above: the interval begins at zero.
+    FromAbove,
 }
 
 /// A candidate with its estimate and resamplings. A draw contains the coefficients and the relative corrections of sizes.

@@ -81,6 +81,12 @@ pub trait EffectKind: Debug + Sync {
     /// Adds the effect to a machine.
     fn apply(&self, _effect: &Effect, _at: Place, _machine: &mut Machine) {}
 
+    /// The power of the noise in the column of one of its terms, relative to that in the torque of a link of inertia `_mass` (kg m² or
+    /// kg), if the noise of the recorded positions is white and passes a filter of half power at `_cutoff` (Hz).
+    fn noise_gain(&self, _term: &Term, _mass: f64, _cutoff: f64) -> f64 {
+        0.0
+    }
+
     /// The title of an effect with these parameters.
     fn title(&self, _effect: &Effect) -> &'static str {
         self.spec().title

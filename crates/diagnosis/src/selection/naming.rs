@@ -96,10 +96,11 @@ impl Estimate for Reader<'_> {
     }
 
     fn note_within(&mut self, systematic: Systematic, key: &'static str, f: &dyn Fn(&[f64]) -> f64) -> f64 {
+        let is_from_above = systematic == Systematic::FromAbove;
         let systematic = match systematic {
             Systematic::Usual => SYSTEMATIC,
             Systematic::OfForm => OF_FORM,
-            Systematic::OfArm => OF_FORM + OF_ARM * self.links_wrong_by(),
+            Systematic::OfArm | Systematic::FromAbove => OF_FORM + OF_ARM * self.links_wrong_by(),
         };
         // A mass is never known more accurately than the torque constants.
         let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
@@ -107,7 +108,10 @@ impl Estimate for Reader<'_> {
             (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => NORMAL_95 * accuracy,
             _ => 0.0,
         };
-        let (value, ci95) = self.resampled.interval_within(systematic + accuracy, f);
+        let (value, mut ci95) = self.resampled.interval_within(systematic + accuracy, f);
+        if is_from_above {
+            ci95[0] = 0.0;
+        }
         let unit = self.unit(key);
         self.parameters.insert(key, Parameter { value, ci95, unit });
         value

@@ -58,6 +58,9 @@ fn link_side(term: &Term, motion: &crate::Signals<'_>) -> LinkSide {
 
 /// The damping ratio that is tried first.
 const DAMPING_RATIO: f64 = 0.06;
+/// The frequencies over which noise is summed: up to a multiple of the cut-off, in steps that are narrow beside a resonance.
+const NOISE_CUTOFFS: f64 = 3.0;
+const NOISE_STEPS: usize = 2000;
 
 impl EffectKind for JointElasticity {
     fn spec(&self) -> &'static Spec {
@@ -94,9 +97,26 @@ impl EffectKind for JointElasticity {
         let stiffness = estimate.simulated(Systematic::OfArm, "stiffness", |drawn, size| {
             stiffness / (drawn - size).clamp(0.4, 2.5)
         });
-        let damping = estimate.size(Systematic::OfArm, "damping", Size::Damping, damping);
+        let damping = estimate.size(Systematic::FromAbove, "damping", Size::Damping, damping);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("stiffness", stiffness).with("damping", damping))
+    }
+
+    /// The link is driven by the recorded motion. Its torque is M ω² / (K − M ω² + i D ω) times that of the rigid link, so that a lightly
+    /// damped spring amplifies the noise of the positions at its resonance.
+    fn noise_gain(&self, term: &Term, mass: f64, cutoff: f64) -> f64 {
+        let [stiffness, damping, ..] = term.sizes;
+        let (mut rigid, mut elastic) = (0.0, 0.0);
+        for step in 1..=NOISE_STEPS {
+            let hertz = step as f64 / NOISE_STEPS as f64 * NOISE_CUTOFFS * cutoff;
+            let omega = std::f64::consts::TAU * hertz;
+            // White positions have accelerations that grow with the square of the frequency; the filter is Gaussian.
+            let power = omega.powi(4) * (-std::f64::consts::LN_2 * (hertz / cutoff).powi(2)).exp();
+            let inertial = mass * omega * omega;
+            rigid += power;
+            elastic += power * inertial * inertial / ((stiffness - inertial).powi(2) + (damping * omega).powi(2));
+        }
+        elastic / rigid
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
@@ -118,6 +138,19 @@ mod tests {
         let effect = effect.with("stiffness", 1e4).with("damping", 3.0);
         let spring = machine(&effect).springs[0].expect("there is a spring");
         assert_eq!((spring.stiffness, spring.damping), (1e4, 3.0));
+    }
+
+    /// A stiff joint adds no noise, a resonance within the filter's band adds a multiple of the rigid link's.
+    #[test]
+    fn a_resonance_amplifies_noise() {
+        let gain = |hertz: f64, ratio: f64| {
+            let omega = std::f64::consts::TAU * hertz;
+            let term = Term::about(&ELASTIC, 0).sized([2.0 * omega * omega, 2.0 * ratio * 2.0 * omega]);
+            JointElasticity.noise_gain(&term, 2.0, 12.0)
+        };
+        assert!(gain(1000.0, 0.06) < 1e-3, "{}", gain(1000.0, 0.06));
+        assert!(gain(12.0, 0.06) > 5.0, "{}", gain(12.0, 0.06));
+        assert!(gain(12.0, 0.03) > 1.5 * gain(12.0, 0.06));
     }
 
     /// With a very stiff spring, the torque is that of the rigid arm.

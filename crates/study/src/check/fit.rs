@@ -81,7 +81,8 @@ pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
         fit.residual_share.push(if explains { residual_share } else { without });
         fit.factor.push(factor);
         fit.without.push(without);
-        let [model, measured] = [MODEL, MEASURED].map(|signal| (products.centred[signal][signal] / count as f64).sqrt());
+        let [model, measured] =
+            [MODEL, MEASURED].map(|signal| (products.centred[signal][signal] / count as f64).sqrt());
         fit.size.push(measured / model.max(f64::MIN_POSITIVE));
     }
     fit
@@ -148,7 +149,10 @@ impl Products {
                 factor = row[MEASURED] / own;
                 for (other, values) in left.iter_mut().enumerate() {
                     let share = row[other] / own;
-                    values.iter_mut().zip(row).for_each(|(value, row)| *value -= share * row);
+                    values
+                        .iter_mut()
+                        .zip(row)
+                        .for_each(|(value, row)| *value -= share * row);
                 }
             }
         }
