@@ -4,7 +4,7 @@
 use crate::signals::Signals;
 use crate::term::{Law, Term};
 
-/// The part of a joint's largest speed below which its friction curve bends.
+/// The part of a joint's largest speed below which its friction curve bends. Source: first background.
 const SLOW: f64 = 0.1;
 
 /// Friction in the recording `of[1]` only: sgn q̇ (form 0) or q̇ (form 1) there, zero in the other recordings.

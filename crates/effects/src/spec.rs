@@ -5,9 +5,11 @@ use arm::JointKind;
 use crate::quantity::Quantity;
 use crate::regressor::Regressor;
 
-/// The evidence that an effect must bring in addition to that of its coefficients (nats), unless its own file states another.
+/// The evidence that an effect must bring in addition to that of its coefficients (nats), unless its own file states
+/// another. Source: first diagnosis.
 const PRIOR: f64 = 6.0;
-/// The evidence that an unmodelled form must bring in addition to that of its coefficients (nats).
+/// The evidence that an unmodelled form must bring in addition to that of its coefficients (nats). Source: first
+/// diagnosis.
 const UNNAMED_PRIOR: f64 = 9.0;
 
 /// The scope of an effect.

@@ -8,10 +8,7 @@ use effects::{CATALOGUE, Spec};
 
 /// The phases in order, with the files of their thresholds.
 const FILES: [(&str, &str); 7] = [
-    (
-        "The most decisive ones, which can be varied",
-        include_str!("../thresholds.rs"),
-    ),
+    ("The most decisive ones, which can be varied", DECISIVE),
     ("Data", include_str!("data.rs")),
     ("Regression", include_str!("regression.rs")),
     ("Search", include_str!("search.rs")),
@@ -19,6 +16,9 @@ const FILES: [(&str, &str); 7] = [
     ("Findings", include_str!("findings.rs")),
     ("Next experiment", include_str!("next.rs")),
 ];
+
+/// The file of the thresholds that can be varied.
+const DECISIVE: &str = include_str!("../thresholds.rs");
 
 /// The rows of a file: each constant or field that has a value, below its doc comment; `file` is put before its name.
 fn rows(file: &str, source: &str) -> String {
@@ -103,6 +103,18 @@ fn limits() -> String {
         rows(&format!("{file}: "), &std::fs::read_to_string(&path).expect("text"))
     });
     rows.collect()
+}
+
+#[test]
+fn every_decisive_threshold_has_a_source() {
+    let table = rows("", DECISIVE);
+    let names = |with: &str| -> Vec<String> {
+        let rows = table.lines().filter(|row| row.contains(with));
+        rows.filter_map(|row| row.split('`').nth(1).map(str::to_owned))
+            .collect()
+    };
+    assert_eq!(names(""), super::Thresholds::NAMES);
+    assert_eq!(names(" Source: "), super::Thresholds::NAMES);
 }
 
 /// `UPDATE_DOCS=1` writes the page anew.

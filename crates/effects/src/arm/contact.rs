@@ -102,12 +102,13 @@ pub fn window(term: &Term) -> Option<[f64; 2]> {
     term.is(&FORCE).then_some([term.sizes[0], term.sizes[1]])
 }
 
-/// The largest force of a contact as a multiple of the arm's weight. The drives could not hold a larger one.
+/// The largest force of a contact as a multiple of the arm's weight. The drives could not hold a larger one. Source:
+/// first diagnosis.
 const MOST_CONTACT: f64 = 4.0;
 
 /// The shortest contact (s).
 const SHORTEST_CONTACT: f64 = 0.05;
-/// Contacts that are less than this apart are one contact (s).
+/// Contacts that are less than this apart are one contact (s). Source: first diagnosis.
 const SAME_CONTACT: f64 = 1.0;
 
 impl EffectKind for ExternalContact {

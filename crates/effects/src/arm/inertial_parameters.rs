@@ -40,7 +40,7 @@ pub static PARAMETER: Law = Law {
     ..Law::PLAIN
 };
 
-/// The share of the largest moment of inertia by which another may be negative, for rounding.
+/// The share of the largest moment of inertia by which another may be negative, for rounding. Source: rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl InertialParameters {

@@ -40,7 +40,7 @@ pub static LINK: Law = Law {
     ..Law::PLAIN
 };
 
-/// The relative error that the mass of a link may have.
+/// The relative error that the mass of a link may have. Source: first diagnosis.
 const RELATIVE: std::ops::Range<f64> = -0.8..2.0;
 
 impl EffectKind for LinkInertialError {

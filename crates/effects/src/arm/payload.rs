@@ -77,14 +77,18 @@ pub static NOT_MOUNTED: Law = Law {
 };
 
 /// The coefficient of a body that is not mounted. It is one if the body is as the URDF says, and URDFs are wrong.
+/// Source: `prove`, seeds 7001 and 7101, in which trying such bodies adds one true name to 120 cases and changes
+/// nothing else.
 const NOT_MOUNTED_RANGE: std::ops::RangeInclusive<f64> = 0.6..=1.6;
-/// A body of less than this part of the last link's mass with all that is fixed to it is a part of that link: a cover, a camera.
+/// A body of less than this part of the last link's mass with all that is fixed to it is a part of that link: a cover,
+/// a camera. Source: as for [`NOT_MOUNTED_RANGE`].
 const LEAST_OF_LAST_LINK: f64 = 0.1;
-/// The largest mass of a payload as a multiple of the mass of the moving links.
+/// The largest mass of a payload as a multiple of the mass of the moving links. Source: first diagnosis.
 const MOST_PAYLOAD: f64 = 1.5;
-/// The largest distance of a payload's centre of mass from the tool (m), as a share of the arm's reach.
+/// The largest distance of a payload's centre of mass from the tool (m), as a share of the arm's reach. Source: first
+/// diagnosis.
 const PAYLOAD_REACH: f64 = 0.5;
-/// The share of the largest moment of inertia by which another may be negative, for rounding.
+/// The share of the largest moment of inertia by which another may be negative, for rounding. Source: rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// The body with ten inertial parameters about a frame's origin. It need not be physically possible.

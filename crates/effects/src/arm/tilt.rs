@@ -59,12 +59,14 @@ pub static GRAVITY: Law = Law {
     ..Law::PLAIN
 };
 
-/// Up to this angle (rad), a turn is found by linearisation about the upright base.
+/// Up to this angle (rad), a turn is found by linearisation about the upright base. Source: first diagnosis, which
+/// found bases turned by 10 and 20 degrees and none from 30 degrees on.
 const MOST_TURNED: f64 = 0.4;
-/// From this angle on (rad), the direction of gravity is found by its three columns.
+/// From this angle on (rad), the direction of gravity is found by its three columns. Source: eight simulated bases
+/// turned by 30 to 180 degrees, all of which are found.
 const LEAST_TURNED: f64 = 0.3;
-/// The factor by which the magnitude of gravity that the columns give may differ from the true one, because masses may differ
-/// from the URDF's.
+/// The factor by which the magnitude of gravity that the columns give may differ from the true one, because masses may
+/// differ from the URDF's. Source: as for [`LEAST_TURNED`].
 const AS_LARGE: f64 = 1.3;
 
 /// The turn of the base after which gravity in the base's frame is `seen` instead of `usual` (m/s²): its angle (rad, from 0

@@ -69,16 +69,19 @@ fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
     LinkSide::new(joint, ticks)
 }
 
-/// The damping ratios of a gap's ends that are tried first: one without bouncing, one with it.
+/// The damping ratios of a gap's ends that are tried first: one without bouncing, one with it. Source: `prove`, seeds
+/// 1, 2, 3, 7, 2026 and 2027, where ends of gaps bounce.
 const STOP_RATIOS: [f64; 2] = [1.0, 0.2];
 
-/// The gaps that are tried first, as shares of the range of the motion.
+/// The gaps that are tried first, as shares of the range of the motion. Source: the smaller ones from twelve simulated
+/// gaps of 0.9 to 23 mrad made with MuJoCo, of which eleven are found (eight without them).
 const GAPS: [f64; 9] = [0.0007, 0.0013, 0.0025, 0.004, 0.008, 0.014, 0.022, 0.035, 0.06];
 
-/// The frequency at which the link swings against compliant ends of a gap, before it is refined (Hz).
+/// The frequency at which the link swings against compliant ends of a gap, before it is refined (Hz). Source: `prove`,
+/// seeds 7 and 2026, whose gaps were 8 to 20 % too large with rigid ends.
 const STOP_FREQUENCY: f64 = 20.0;
 
-/// The frequencies that are tried first where a gap was found with rigid ends (Hz).
+/// The frequencies that are tried first where a gap was found with rigid ends (Hz). Source: as for [`STOP_FREQUENCY`].
 const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
 
 /// The stiffness of ends (N m/rad) on which a link with an inertia swings at a frequency (Hz).

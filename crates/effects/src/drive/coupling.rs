@@ -10,8 +10,8 @@ use crate::{
 #[derive(Debug)]
 pub struct TransmissionCoupling;
 
-/// The largest distance in the chain between two joints that share a drive: in a wrist, the shaft of a drive passes through one
-/// other joint.
+/// The largest distance in the chain between two joints that share a drive: in a wrist, the shaft of a drive passes
+/// through one other joint. Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.
 pub const FARTHEST_COUPLED: usize = 2;
 
 static SPEC: Spec = Spec {

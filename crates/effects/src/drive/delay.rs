@@ -46,11 +46,12 @@ pub static LATE: Law = Law {
     ..Law::PLAIN
 };
 
-/// The longest delay of a drive (s). A position loop with a longer one is unstable.
+/// The longest delay of a drive (s). A position loop with a longer one is unstable. Source: first diagnosis.
 const LONGEST_DELAY: f64 = 0.03;
 
-/// The part of the joint's torque that accelerations must need. A delay shows where the torque changes quickly; gravity and
-/// friction change slowly or at reversals, where a delay and a dependence on the velocity look alike.
+/// The part of the joint's torque that accelerations must need. A delay shows where the torque changes quickly; gravity
+/// and friction change slowly or at reversals, where a delay and a dependence on the velocity look alike. Source: a
+/// real robot on which a delay of 26 ms was named where nothing accelerates.
 const LEAST_INERTIAL: f64 = 0.05;
 
 impl EffectKind for ActuationDelay {

@@ -56,7 +56,7 @@ fn link_side(term: &Term, motion: &crate::Signals<'_>) -> LinkSide {
     LinkSide::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
 }
 
-/// The damping ratio that is tried first.
+/// The damping ratio that is tried first. Source: first diagnosis.
 const DAMPING_RATIO: f64 = 0.06;
 /// The frequencies over which noise is summed: up to a multiple of the cut-off, in steps that are narrow beside a resonance.
 const NOISE_CUTOFFS: f64 = 3.0;

@@ -44,11 +44,11 @@ pub fn columns(joint: usize, periods: f64) -> Vec<Term> {
     sine_and_cosine(&RIPPLE, joint, periods)
 }
 
-/// The least ratio of a gear, as periods per revolution of the joint: a motor before a gear turns at least this often, and its
-/// poles and teeth repeat more often.
+/// The least ratio of a gear, as periods per revolution of the joint: a motor before a gear turns at least this often,
+/// and its poles and teeth repeat more often. Source: a real robot on which a ripple of 4.27 periods was named.
 const LEAST_GEARED: f64 = 8.0;
 
-/// The relative difference of periods below which two ripples are the same.
+/// The relative difference of periods below which two ripples are the same. Source: first diagnosis.
 const SAME_PERIODS: f64 = 0.2;
 
 impl EffectKind for TorqueRipple {

@@ -45,19 +45,21 @@ pub static EXCESS: Law = Law {
     ..Law::PLAIN
 };
 
-/// The coefficient that a limit may have. It removes all torque beyond it, so that the coefficient is one; a torque scale
-/// changes it.
+/// The coefficient that a limit may have. It removes all torque beyond it, so that the coefficient is one; a torque
+/// scale changes it. Source: first diagnosis.
 const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
-/// The largest part of the power beyond the limit that may remain with the limit in the model. If more remains, the motion
-/// shows that the drive gave more torque.
+/// The largest part of the power beyond the limit that may remain with the limit in the model. If more remains, the
+/// motion shows that the drive gave more torque. Source: a real robot on which a limit of 31 N m was named although 8.5
+/// % of the rows are above it.
 const MOST_REMAINING: f64 = 0.5;
-/// The largest part of the moving rows that a torque limit may clip.
+/// The largest part of the moving rows that a torque limit may clip. Source: first diagnosis.
 const MOST_CLIPPED: f64 = 0.45;
 /// The least torque limit, as a part of the torque that the motion needs by the model, which may be wrong. Source: a simulated
 /// arm with a URDF wrong by 30 %, whose limit a value of 0.7 excluded.
 const BELOW_NEED: f64 = 0.45;
-/// The least torque limit, as a multiple of the joint's dry friction. With a lower limit, the drive could hardly move the
-/// joint, and a torque that is mostly dry friction looks clipped at the friction level.
+/// The least torque limit, as a multiple of the joint's dry friction. With a lower limit, the drive could hardly move
+/// the joint, and a torque that is mostly dry friction looks clipped at the friction level. Source: the TIAGo, on whose
+/// joint arm_1 a limit of 3.4 N m was named beside 3.3 N m of friction.
 const LEAST_OVER_FRICTION: f64 = 1.3;
 
 impl EffectKind for TorqueSaturation {
@@ -137,7 +139,7 @@ fn cuts(fitted: &dyn Fitted) -> bool {
     with <= MOST_REMAINING * without
 }
 
-/// A limit acts on a row if its column exceeds this part of its largest value.
+/// A limit acts on a row if its column exceeds this part of its largest value. Source: first diagnosis.
 const ACTS: f64 = 0.02;
 
 /// The part of the moving rows on which the first column differs from zero.

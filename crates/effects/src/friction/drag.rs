@@ -40,7 +40,7 @@ fn drag(qd: f64, exponent: f64) -> f64 {
     qd.abs().powf(exponent).copysign(qd)
 }
 
-/// The exponents that a drag may have.
+/// The exponents that a drag may have. Source: `prove`, seeds 1 and 2, and two sets made with MuJoCo.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 1.4..=3.2;
 
 impl EffectKind for QuadraticDrag {

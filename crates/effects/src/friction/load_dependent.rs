@@ -44,9 +44,10 @@ pub static LOAD_SIGN: Law = Law {
     ..Law::PLAIN
 };
 
-/// The largest gain: with a larger one, friction would exceed the load.
+/// The largest gain: with a larger one, friction would exceed the load. Source: definition.
 const LARGEST_GAIN: f64 = 1.0;
-/// Without load, friction may be zero, but not negative by more than this part of the load's friction.
+/// Without load, friction may be zero, but not negative by more than this part of the load's friction. Source: first
+/// diagnosis.
 const BELOW_ZERO: f64 = 0.1;
 
 impl EffectKind for LoadDependentFriction {

@@ -10,7 +10,7 @@ use crate::{
 #[derive(Debug)]
 pub struct ThermalDrift;
 
-/// The shortest time constant of a drive that warms (s).
+/// The shortest time constant of a drive that warms (s). Source: first diagnosis.
 pub const FASTEST_WARMING: f64 = 8.0;
 
 static SPEC: Spec = Spec {
@@ -73,9 +73,9 @@ fn start(begins: f64) -> f64 {
     if begins.abs() > OWN_CLOCK { begins.floor() } else { 0.0 }
 }
 
-/// Refinement may shorten a time constant to this part of [`FASTEST_WARMING`].
+/// Refinement may shorten a time constant to this part of [`FASTEST_WARMING`]. Source: first diagnosis.
 const REFINED: f64 = 0.7;
-/// The largest additional friction of a cold drive, as a multiple of the warm friction.
+/// The largest additional friction of a cold drive, as a multiple of the warm friction. Source: first diagnosis.
 const MOST_COLD: f64 = 4.0;
 
 impl EffectKind for ThermalDrift {

@@ -47,8 +47,8 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// The smallest range (rad) on which it is tried. On a smaller one, a sine differs from a straight line by less than 0.3 % of
-/// its rise, which no recording shows.
+/// The smallest range (rad) on which it is tried. Source: on a smaller one, a sine differs from a straight line by less
+/// than 0.3 % of its rise, which no recording shows.
 const SMALLEST_RANGE: f64 = 0.75;
 /// The largest weight that a counterbalance carries, as a multiple of the weight on the joint by the model. It is above one,
 /// because the model may lack a load at the tool.

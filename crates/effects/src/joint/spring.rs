@@ -36,21 +36,26 @@ static SPEC: Spec = Spec {
     ..Spec::EMPTY
 };
 
-/// A point of a curve is used if the moving joint comes close enough for its tent function to reach this value.
+/// A point of a curve is used if the moving joint comes close enough for its tent function to reach this value. Source:
+/// `prove`, seeds 1 and 2, and two sets made with MuJoCo.
 const VISITED: f64 = 0.5;
-/// The largest part of its total rise by which a spring's curve may fall between two points, due to noise.
+/// The largest part of its total rise by which a spring's curve may fall between two points, due to noise. Source: as
+/// for [`VISITED`].
 const LARGEST_FALL: f64 = 0.05;
-/// The largest part of its total rise by which a spring's curve may fall over all its points together.
+/// The largest part of its total rise by which a spring's curve may fall over all its points together. Source: as for
+/// [`VISITED`].
 const ALL_FALLS: f64 = 0.1;
-/// The number of parts of the recorded range between which the slope of a curve is evaluated.
+/// The number of parts of the recorded range between which the slope of a curve is evaluated. Source: first diagnosis.
 const SLOPES: i32 = 20;
-/// The least number of these slopes that are positive for a spring: a curve that falls elsewhere is no spring.
+/// The least number of these slopes that are positive for a spring: a curve that falls elsewhere is no spring. Source:
+/// first diagnosis.
 const LEAST_RISING: usize = 17;
-/// The points of a curve.
+/// The points of a curve. Source: first diagnosis.
 const POINTS: usize = 12;
 
-/// The farthest rest position of a spring, beyond the recorded range, as a multiple of that range, unless it is within the
-/// joint's range. A spring with a farther rest position is almost a constant torque.
+/// The farthest rest position of a spring, beyond the recorded range, as a multiple of that range, unless it is within
+/// the joint's range. A spring with a farther rest position is almost a constant torque. Source: two real robots, on
+/// four joints of which springs about −11.8 or 14.1 rad took the place of an offset.
 const BEYOND: f64 = 1.0;
 
 fn columns(joint: usize, powers: &[usize]) -> Vec<Term> {

@@ -42,7 +42,7 @@ pub static SLOPE: Law = Law {
     ..Law::PLAIN
 };
 
-/// The largest offset (rad or m): the column is linearised about zero.
+/// The largest offset (rad or m): the column is linearised about zero. Source: first diagnosis.
 const LARGEST_OFFSET: f64 = 0.2;
 
 impl EffectKind for EncoderOffset {

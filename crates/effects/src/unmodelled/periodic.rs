@@ -28,7 +28,7 @@ pub fn columns(joint: usize, omega: f64) -> Vec<Term> {
     sine_and_cosine(&WAVE, joint, omega)
 }
 
-/// The relative difference of frequencies below which two sinusoids are the same.
+/// The relative difference of frequencies below which two sinusoids are the same. Source: first diagnosis.
 const SAME_FREQUENCY: f64 = 0.1;
 
 impl EffectKind for Periodic {
