@@ -237,10 +237,12 @@ pub fn factor(ratio: f64) -> String {
     fixed(ratio, usize::from(ratio < 9.95))
 }
 
-/// Per cent, to a tenth where it is not a whole number.
-pub fn percent_to_a_tenth(share: f64) -> String {
-    let percent = 100.0 * share;
-    if (percent - percent.round()).abs() < 0.05 {
+/// Per cent, to a tenth where it is not a whole number; a ratio above one is a factor: `1.4 times`.
+pub fn percent_to_a_tenth(ratio: f64) -> String {
+    let percent = 100.0 * ratio;
+    if percent.is_finite() && percent >= 100.05 {
+        format!("{} times", factor(ratio))
+    } else if (percent - percent.round()).abs() < 0.05 {
         format!("{percent:.0} %")
     } else {
         format!("{percent:.1} %")
@@ -322,6 +324,12 @@ mod tests {
         for (name, parameter, text) in cases {
             assert_eq!(with_interval(name, &parameter), text);
         }
+    }
+
+    #[test]
+    fn a_ratio_above_one_is_no_percentage() {
+        let texts = [0.0, 0.26, 0.9996, 1.0, 1.13, 6.578].map(percent_to_a_tenth);
+        assert_eq!(texts, ["0 %", "26 %", "100 %", "100 %", "1.1 times", "6.6 times"]);
     }
 
     #[test]

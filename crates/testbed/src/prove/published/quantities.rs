@@ -3,18 +3,19 @@
 use std::f64::consts::PI;
 
 use arm::JointKind;
-use report::numbers::{factor, percent_to_a_tenth as percent};
+use report::numbers::{factor, percent_to_a_tenth as percent, rounded};
 
 /// Whether an effect acts on the whole arm.
 pub fn is_on_the_arm(effect: &str) -> bool {
     effects::spec(effect).is_some_and(|spec| spec.scope == effects::Scope::Arm)
 }
 
-/// A relative difference from a published value in per cent with its sign, or the ratio to that value from 2 on.
+/// A relative difference from a published value in per cent with its sign, or the ratio to that value from 2 on and below zero.
 pub fn difference(relative: f64) -> String {
     let text = percent(relative.abs());
     match relative {
         relative if text == "0 %" || relative == 0.0 => text,
+        relative if relative < -1.0 => format!("−{} times", rounded(-1.0 - relative, 2)),
         relative if relative < 0.0 => format!("−{text}"),
         relative if relative >= 1.0 => format!("{} times", factor(1.0 + relative)),
         _ => format!("+{text}"),
@@ -81,6 +82,12 @@ mod tests {
     use super::*;
     use faults::catalogue;
     use scoring::compared_parameters;
+
+    #[test]
+    fn large_differences_are_ratios() {
+        let texts = [0.0, 0.265, -0.3, 1.4, -1.5].map(difference);
+        assert_eq!(texts, ["0 %", "+26.5 %", "−30 %", "2.4 times", "−0.50 times"]);
+    }
 
     #[test]
     fn units_are_those_of_the_joint() {
