@@ -1,10 +1,7 @@
 //! How well recordings agree with the model of the arm.
 
 use arm::Arm;
-use effects::drive::RotorInertia;
-use effects::friction::{CoulombFriction, ViscousFriction};
-use effects::sensor::TorqueOffset;
-use effects::{Effect, EffectKind};
+use effects::{Effect, EffectKind, OMITTED_BY_MOST};
 
 use crate::data::Data;
 use crate::data::input::Input;
@@ -18,9 +15,6 @@ use crate::search::plan;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{CUTOFF, FAR_LESS};
-
-/// The effects that nearly every URDF leaves out.
-const PLAIN: [&dyn EffectKind; 4] = [&CoulombFriction, &ViscousFriction, &RotorInertia, &TorqueOffset];
 
 /// How well the model of an arm explains recordings, with plain friction, drive inertia and a constant torque at every joint, and
 /// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says.
@@ -67,7 +61,7 @@ pub fn agreement(
     let options = Options {
         cutoff,
         known: known.to_vec(),
-        only: Some(PLAIN.iter().flat_map(wanted).collect()),
+        only: Some(OMITTED_BY_MOST.iter().flat_map(wanted).collect()),
         ..Options::default()
     };
     let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);

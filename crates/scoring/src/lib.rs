@@ -51,6 +51,7 @@ pub use answer::{
     Separated,
 };
 pub use calibration::{Bin, Calibration};
+pub use catalogue::BASELINE_WITH_DRIVES;
 pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
 pub use experiments::{After, Confusion, Experiments, InCase};
 pub use intervals::{Counted, quantile, wilson};

@@ -1,8 +1,6 @@
 //! The control for comparison: full linear identification, without names.
 
-use effects::drive::RotorInertia;
-use effects::friction::{CoulombFriction, ViscousFriction};
-use effects::sensor::TorqueOffset;
+use effects::OMITTED_BY_MOST;
 
 use crate::regression::strengths::Strengths;
 use crate::regression::table::Moving;
@@ -24,9 +22,7 @@ pub fn identified(study: &Study) -> Vec<Option<f64>> {
     };
     let is_part = |&candidate: &usize| {
         let hypothesis = study.candidates[candidate].hypothesis;
-        let always = study.always_acts(candidate);
-        let is = |kind: &'static dyn effects::EffectKind| hypothesis.is(kind);
-        always && (is(&ViscousFriction) || is(&CoulombFriction) || is(&RotorInertia) || is(&TorqueOffset))
+        study.always_acts(candidate) && OMITTED_BY_MOST.iter().any(|&kind| hypothesis.is(kind))
     };
     let parts = (0..study.candidates.len()).filter(is_part);
     let columns = parts.flat_map(|candidate| study.candidates[candidate].columns.clone());

@@ -5,12 +5,10 @@ use std::collections::BTreeSet;
 use report::block::{Block, table, text};
 use report::numbers::rounded;
 use report::score::name;
-use scoring::{Name, quantile};
+use scoring::{BASELINE_WITH_DRIVES, Name, quantile};
 
 use super::{CaseTracking, Model};
 
-/// The baseline effects, which are in every case of the robot and not required to be found.
-const BASELINE: [&str; 3] = ["coulomb_friction", "viscous_friction", "rotor_inertia"];
 /// The target for the tracking error with a diagnosed model over that with the exact one.
 const WANTED: f64 = 1.5;
 
@@ -99,7 +97,10 @@ fn row(case: &CaseTracking) -> Vec<String> {
             .map_or_else(String::new, |onset| format!(" from {onset:.0} s"));
         format!("{}{onset}", name(&(effect.effect.clone(), effect.joint.clone())))
     });
-    let named = case.named.iter().filter(|named| !BASELINE.contains(&named.0.as_str()));
+    let named = case
+        .named
+        .iter()
+        .filter(|named| !BASELINE_WITH_DRIVES.contains(&named.0.as_str()));
     let or_nothing = |words: Vec<String>| {
         if words.is_empty() {
             "baseline effects only".to_owned()
@@ -148,7 +149,7 @@ fn why(case: &CaseTracking) -> String {
         .map(|effect| name(&(effect.effect.clone(), effect.joint.clone())))
         .collect();
     let is_there = |named: &&Name| {
-        BASELINE.contains(&named.0.as_str())
+        BASELINE_WITH_DRIVES.contains(&named.0.as_str())
             || case
                 .injected
                 .iter()
