@@ -11,6 +11,8 @@ pub enum Quantity {
     Position,
     /// A joint's speed.
     Speed,
+    /// A joint's acceleration.
+    Acceleration,
     /// Torque per speed.
     Damping,
     /// Torque per squared speed.
@@ -40,7 +42,13 @@ impl Quantity {
             Self::Torque | Self::Damping | Self::Drag | Self::Inertia | Self::Stiffness | Self::Mass | Self::Force => {
                 true
             }
-            Self::Position | Self::Speed | Self::Ratio | Self::Angle | Self::Time | Self::Length => false,
+            Self::Position
+            | Self::Speed
+            | Self::Acceleration
+            | Self::Ratio
+            | Self::Angle
+            | Self::Time
+            | Self::Length => false,
         }
     }
 
@@ -54,6 +62,7 @@ impl Quantity {
             Self::Torque => either("N m", "N"),
             Self::Position => either("rad", "m"),
             Self::Speed => either("rad/s", "m/s"),
+            Self::Acceleration => either("rad/s²", "m/s²"),
             Self::Damping => either("N m s/rad", "N s/m"),
             Self::Drag => either("N m s²/rad²", "N s²/m²"),
             Self::Inertia => either("kg m²", "kg"),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use arm::{Arm, JointKind};
 use diagnosis::{Doubt, Finding, NotObservable, Report};
+use effects::Quantity;
 
 use crate::block::{Block, table, text};
 use crate::{alternatives, doubts, markdown, next_words, numbers, terminal, words};
@@ -169,7 +170,7 @@ fn errors(report: &Report, arm: &Arm) -> Vec<Block> {
     let optional = |value: Option<f64>| value.map_or("–".to_owned(), numbers::nrmse);
     let rows = arm.joints().iter().filter_map(|joint| {
         let fit = report.fit.get(&joint.name)?;
-        let unit = if joint.kind == JointKind::Prismatic { "N" } else { "N m" };
+        let unit = Quantity::Torque.unit(joint.kind);
         Some(vec![
             code(&joint.name),
             numbers::quantity(fit.torque_std, unit),
@@ -205,7 +206,7 @@ fn rollout(report: &Report, arm: &Arm) -> Vec<Block> {
     }
     let rows = arm.joints().iter().filter_map(|joint| {
         let rollout = report.rollout.get(&joint.name)?;
-        let unit = if joint.kind == JointKind::Prismatic { "m" } else { "rad" };
+        let unit = Quantity::Position.unit(joint.kind);
         let errors = [rollout.nominal_rms_rad, rollout.augmented_rms_rad];
         let [nominal, augmented] = errors.map(|error| numbers::quantity(error, unit));
         Some(vec![code(&joint.name), nominal, augmented])

@@ -1,7 +1,8 @@
 //! Regions of state and stretches of time in which a residual is largest, in words.
 
-use arm::{Joint, JointKind};
+use arm::Joint;
 use diagnosis::{Axis, Region, TimeWindow};
+use effects::Quantity;
 
 use crate::numbers;
 
@@ -20,14 +21,13 @@ pub fn windows(windows: &[TimeWindow]) -> String {
 
 /// A region of the state of `joint`, with its unit.
 pub fn region(region: &Region, joint: &Joint) -> String {
-    let is_sliding = joint.kind == JointKind::Prismatic;
-    let unit = |turning, sliding| if is_sliding { sliding } else { turning };
-    let unit = match region.axis {
-        Axis::Angle => unit("rad", "m"),
-        Axis::NearReversal | Axis::Speed => unit("rad/s", "m/s"),
-        Axis::Load => unit("N m", "N"),
-        Axis::ElapsedTime => "s",
+    let quantity = match region.axis {
+        Axis::Angle => Quantity::Position,
+        Axis::NearReversal | Axis::Speed => Quantity::Speed,
+        Axis::Load => Quantity::Torque,
+        Axis::ElapsedTime => Quantity::Time,
     };
+    let unit = quantity.unit(joint.kind);
     let [from, to] = region.range.map(numbers::trimmed);
     let quantity = match region.axis {
         Axis::NearReversal => return format!("speed below {to} {unit}"),

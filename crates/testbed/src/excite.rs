@@ -10,6 +10,7 @@ use std::path::Path;
 use anyhow::Context;
 use arm::{Arm, JointKind};
 use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
+use effects::Quantity;
 use recording::Recording;
 use report::terminal::{fitted, table, wrapped};
 use report::{numbers, words};
@@ -91,11 +92,7 @@ fn explained(error: ExcitationError, robot: &RobotFile, arm: &Arm) -> anyhow::Er
             what: "position",
         } => format!("; give them: --position-limit {joint}=LOW:HIGH"),
         ExcitationError::Unlimited { joint, what } => {
-            let unit = if kind(joint) == Some(JointKind::Prismatic) {
-                "m/s"
-            } else {
-                "rad/s"
-            };
+            let unit = Quantity::Speed.unit(kind(joint).unwrap_or(JointKind::Revolute));
             format!("; give one: --{what}-limit {joint}=VALUE ({unit})")
         }
         ExcitationError::NoRoom { joint, what, .. } => format!("; give another: --{what}-limit {joint}=…"),
@@ -244,10 +241,7 @@ fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
 }
 
 fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {
-    let (place, torque) = match kind {
-        JointKind::Revolute => ("rad", "N m"),
-        JointKind::Prismatic => ("m", "N"),
-    };
+    let (place, torque) = (Quantity::Position.unit(kind), Quantity::Torque.unit(kind));
     let part = |value: f64, allowed: f64, unit: &str| {
         let of = if allowed.is_finite() {
             numbers::percent(value / allowed)

@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, ensure};
-use arm::{Arm, DMatrix, JointKind};
+use arm::{Arm, DMatrix};
+use effects::Quantity;
 use plant::{Plant, PlantOptions};
 use recording::Recording;
 use torque::{Command, Controller, Motion, TorqueModel};
@@ -200,10 +201,7 @@ fn remedy(scenario: &Scenario) -> String {
     arm.mass_matrix(&mut arm::Workspace::new(arm), &scenario.reference.centre, &mut matrix);
     let inertias = matrix.diagonal();
     let lightest = inertias.imin();
-    let unit = match arm.joints()[lightest].kind {
-        JointKind::Revolute => "kg m²",
-        JointKind::Prismatic => "kg",
-    };
+    let unit = Quantity::Inertia.unit(arm.joints()[lightest].kind);
     if inertias[lightest] < NEXT_TO_NONE * inertias.max() {
         format!(
             "joint \"{}\" moves no more than {:.1e} {unit}: correct the <inertial> of the links beyond it, or give the joint a \

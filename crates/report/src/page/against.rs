@@ -2,7 +2,7 @@
 
 use arm::{Arm, JointKind};
 use diagnosis::{Dependence, Finding, Trace};
-use effects::Regressor;
+use effects::{Quantity, Regressor};
 
 /// A quantity of the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,22 +68,25 @@ impl Against {
 
     /// The words and the unit of the axis.
     pub fn title(self, arm: &Arm, joint: usize) -> (String, &'static str) {
-        let slides = |joint: usize| arm.joints()[joint].kind == JointKind::Prismatic;
-        let unit = |turning, sliding| if slides(joint) { sliding } else { turning };
-        let torque = unit("torque", "force");
-        match self {
-            Self::Position => ("position".into(), unit("rad", "m")),
-            Self::Speed => ("velocity".into(), unit("rad/s", "m/s")),
-            Self::Acceleration => ("acceleration".into(), unit("rad/s²", "m/s²")),
-            Self::Time | Self::TimeAlong => ("time".into(), "s"),
-            Self::Load => (format!("model {torque}"), unit("N m", "N")),
-            Self::LoadAlong => (format!("model |{torque}|"), unit("N m", "N")),
-            Self::Predicted => (format!("{torque} predicted by the effect"), unit("N m", "N")),
-            Self::OtherSpeed(other) => (
-                format!("velocity of {}", arm.joints()[other].name),
-                if slides(other) { "m/s" } else { "rad/s" },
-            ),
-        }
+        let kind = arm.joints()[joint].kind;
+        let torque = match kind {
+            JointKind::Revolute => "torque",
+            JointKind::Prismatic => "force",
+        };
+        let (words, quantity) = match self {
+            Self::Position => ("position".into(), Quantity::Position),
+            Self::Speed => ("velocity".into(), Quantity::Speed),
+            Self::Acceleration => ("acceleration".into(), Quantity::Acceleration),
+            Self::Time | Self::TimeAlong => ("time".into(), Quantity::Time),
+            Self::Load => (format!("model {torque}"), Quantity::Torque),
+            Self::LoadAlong => (format!("model |{torque}|"), Quantity::Torque),
+            Self::Predicted => (format!("{torque} predicted by the effect"), Quantity::Torque),
+            Self::OtherSpeed(other) => {
+                let other = &arm.joints()[other];
+                return (format!("velocity of {}", other.name), Quantity::Speed.unit(other.kind));
+            }
+        };
+        (words, quantity.unit(kind))
     }
 
     /// Its value at a row of a recording.

@@ -1,7 +1,7 @@
 //! How well each joint's torque is predicted: chart and table of the errors, and the simulated motion.
 
-use arm::JointKind;
 use diagnosis::JointFit;
+use effects::Quantity;
 use maud::{PreEscaped, html};
 
 use super::table::{number, table, words};
@@ -86,7 +86,7 @@ impl Page<'_> {
         }
         let rows = self.figures.arm.joints().iter().filter_map(|joint| {
             let rollout = self.report.rollout.get(&joint.name)?;
-            let unit = if joint.kind == JointKind::Prismatic { "m" } else { "rad" };
+            let unit = Quantity::Position.unit(joint.kind);
             let factor = rollout.nominal_rms_rad / rollout.augmented_rms_rad;
             Some(vec![
                 self.link(Some(&joint.name)),

@@ -1,7 +1,8 @@
 //! The residual of a joint in time, before and after.
 
-use arm::{Arm, JointKind};
+use arm::Arm;
 use diagnosis::{TimeWindow, Trace, Traces};
+use effects::Quantity;
 
 use super::zoom::{Axis, Cell, Data, Panel, Series, differences};
 use crate::chart::{Scale, Svg, thinned};
@@ -30,10 +31,7 @@ pub const LEFT: f64 = 66.0;
 impl Figures<'_> {
     /// The unit of the joint's torque.
     pub fn torque_unit(&self, joint: usize) -> &'static str {
-        match self.arm.joints()[joint].kind {
-            JointKind::Revolute => "N m",
-            JointKind::Prismatic => "N",
-        }
+        Quantity::Torque.unit(self.arm.joints()[joint].kind)
     }
 
     /// The residual over time, before and after, the recordings side by side; `windows` (s) are shaded.

@@ -1,7 +1,8 @@
 //! The initial layout of the viewer: the arm and the summary at the left, residuals, torques and effects at the right.
 
-use arm::{Arm, JointKind};
+use arm::Arm;
 use diagnosis::Report;
+use effects::Quantity;
 use report::words;
 use rerun::datatypes::{TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::external::re_sdk_types::blueprint::archetypes::{PlotLegend, TimeAxis};
@@ -138,10 +139,7 @@ fn grid(layout: &mut Layout<'_>, arm: &Arm, tab: &Tab, is_shown: &dyn Fn(&str) -
     let axis = TimeAxis::new().with_view_range(TimeRange { start, end });
     let mut plots = Vec::new();
     for joint in arm.joints().iter().filter(|joint| is_shown(&joint.name)) {
-        let unit = match joint.kind {
-            JointKind::Revolute => "N m",
-            JointKind::Prismatic => "N",
-        };
+        let unit = Quantity::Torque.unit(joint.kind);
         let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
         let origin = joint_entity(&joint.name).join(&EntityPath::from(tab.part));
         let name = format!("{} ({unit})", joint.name);

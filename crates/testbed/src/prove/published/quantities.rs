@@ -1,8 +1,10 @@
 //! The units of published values, with their factors to the SI unit at the joint.
 
 use std::f64::consts::PI;
+use std::iter;
 
 use arm::JointKind;
+use effects::Quantity;
 use report::numbers::{factor, percent_to_a_tenth as percent, rounded};
 
 /// Whether an effect acts on the whole arm.
@@ -22,59 +24,55 @@ pub fn difference(relative: f64) -> String {
     }
 }
 
-/// A unit's name, and its factor to the first of its list.
+/// A unit's name, and its factor to the SI unit.
 type Unit = (&'static str, f64);
 
-const TORQUE: &[Unit] = &[("N m", 1.0), ("mN m", 1e-3), ("kN m", 1e3)];
-const FORCE: &[Unit] = &[("N", 1.0), ("kN", 1e3)];
-const ANGLE: &[Unit] = &[("rad", 1.0), ("mrad", 1e-3), ("deg", PI / 180.0)];
-const LENGTH: &[Unit] = &[("m", 1.0), ("mm", 1e-3)];
-const TIME: &[Unit] = &[("s", 1.0), ("ms", 1e-3)];
-const MASS: &[Unit] = &[("kg", 1.0), ("g", 1e-3)];
-const NONE: &[Unit] = &[("1", 1.0), ("%", 1e-2)];
+const ANGLE: &[Unit] = &[("mrad", 1e-3), ("deg", PI / 180.0)];
+const LENGTH: &[Unit] = &[("mm", 1e-3)];
+const FORCE: &[Unit] = &[("kN", 1e3)];
+const MASS: &[Unit] = &[("g", 1e-3)];
 
-/// The units of a parameter at a joint of `kind`; `None` is the whole arm.
-fn units(effect: &str, parameter: &str, kind: Option<JointKind>) -> &'static [Unit] {
-    let turns = kind != Some(JointKind::Prismatic);
-    let either = |turning: &'static [Unit], sliding: &'static [Unit]| if turns { turning } else { sliding };
-    match (effect, parameter) {
-        ("encoder_offset", "offset") | (_, "rest" | "halfgap" | "angle") => either(ANGLE, LENGTH),
-        ("quadratic_drag", "coefficient") => either(&[("N m s²/rad²", 1.0)], &[("N s²/m²", 1.0)]),
-        ("viscous_friction", "coefficient") | (_, "damping" | "viscous") => {
-            either(&[("N m s/rad", 1.0), ("N m s/deg", 180.0 / PI)], &[("N s/m", 1.0)])
-        }
-        (_, "stiffness") => either(
-            &[("N m/rad", 1.0), ("kN m/rad", 1e3), ("N m/deg", 180.0 / PI)],
-            &[("N/m", 1.0), ("kN/m", 1e3)],
-        ),
-        (_, "inertia") => either(&[("kg m²", 1.0)], MASS),
-        (_, "velocity") => either(
-            &[("rad/s", 1.0), ("deg/s", PI / 180.0)],
-            &[("m/s", 1.0), ("mm/s", 1e-3)],
-        ),
-        (_, "mass") => MASS,
-        (_, "com_x" | "com_y" | "com_z") => LENGTH,
-        (_, "force") => FORCE,
-        (_, "delay" | "duration" | "time_constant") => TIME,
-        ("thermal_drift", "amplitude") | (_, "factor" | "gain" | "relative" | "periods") => NONE,
-        _ => either(TORQUE, FORCE),
+/// The units of a quantity at a joint of `kind` that are accepted beside the SI unit.
+fn other_units(quantity: Quantity, kind: JointKind) -> &'static [Unit] {
+    let either = |turning: &'static [Unit], sliding: &'static [Unit]| match kind {
+        JointKind::Revolute => turning,
+        JointKind::Prismatic => sliding,
+    };
+    match quantity {
+        Quantity::Torque => either(&[("mN m", 1e-3), ("kN m", 1e3)], FORCE),
+        Quantity::Position => either(ANGLE, LENGTH),
+        Quantity::Speed => either(&[("deg/s", PI / 180.0)], &[("mm/s", 1e-3)]),
+        Quantity::Damping => either(&[("N m s/deg", 180.0 / PI)], &[]),
+        Quantity::Stiffness => either(&[("kN m/rad", 1e3), ("N m/deg", 180.0 / PI)], &[("kN/m", 1e3)]),
+        Quantity::Inertia => either(&[], MASS),
+        Quantity::Acceleration | Quantity::Drag => &[],
+        Quantity::Ratio => &[("%", 1e-2)],
+        Quantity::Angle => ANGLE,
+        Quantity::Time => &[("ms", 1e-3)],
+        Quantity::Mass => MASS,
+        Quantity::Length => LENGTH,
+        Quantity::Force => FORCE,
     }
 }
 
-/// The factor from `unit` to the SI unit, and the SI unit; the error states the possible units.
+/// The factor from `unit` to the SI unit of a parameter, and that unit, at a joint of `kind` (`None` is the whole arm); the error
+/// states the possible units.
 pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) -> Result<(f64, &'static str), String> {
-    let known = units(effect, parameter, kind);
-    let found = known.iter().find(|(name, _)| *name == unit);
-    match (found, known.first()) {
-        (Some((_, factor)), Some((si, _))) => Ok((*factor, si)),
-        _ => {
-            let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-            Err(format!(
-                "\"{unit}\" is no unit of {effect}\u{2019}s {parameter} here; give {}",
-                known.join(" or ")
-            ))
-        }
+    let found = effects::spec(effect).and_then(|spec| spec.parameter(parameter));
+    let quantity = found
+        .ok_or_else(|| format!("{effect} has no parameter {parameter}"))?
+        .quantity;
+    let kind = kind.unwrap_or(JointKind::Revolute);
+    let si = quantity.unit(kind);
+    let known = || iter::once((si, 1.0)).chain(other_units(quantity, kind).iter().copied());
+    if let Some((_, factor)) = known().find(|(name, _)| *name == unit) {
+        return Ok((factor, si));
     }
+    let known: Vec<&str> = known().map(|(name, _)| name).collect();
+    Err(format!(
+        "\"{unit}\" is no unit of {effect}\u{2019}s {parameter} here; give {}",
+        known.join(" or ")
+    ))
 }
 
 #[cfg(test)]
@@ -105,22 +103,15 @@ mod tests {
     }
 
     #[test]
-    fn the_diagnosis_says_the_same_units() {
-        // One parameter of each kind, with its unit in `diagnose --json`.
-        for (effect, parameter, unit) in [
-            ("coulomb_friction", "level", "N m"),
-            ("torque_offset", "offset", "N m"),
-            ("encoder_offset", "offset", "rad"),
-            ("joint_elasticity", "stiffness", "N m/rad"),
-            ("joint_elasticity", "damping", "N m s/rad"),
-            ("quadratic_drag", "coefficient", "N m s²/rad²"),
-            ("stribeck_friction", "velocity", "rad/s"),
-            ("actuation_delay", "delay", "s"),
-        ] {
-            assert_eq!(si(effect, parameter, Some(JointKind::Revolute), unit), Ok((1.0, unit)));
-        }
+    fn all_parameters_that_are_compared_have_a_unit() {
         for effect in catalogue() {
-            assert!(!compared_parameters(effect).is_empty(), "{effect}");
+            let compared = compared_parameters(effect);
+            assert!(!compared.is_empty(), "{effect}");
+            for parameter in compared {
+                let unit = effects::spec(effect).and_then(|spec| spec.unit(parameter, JointKind::Revolute));
+                let unit = unit.unwrap_or_else(|| panic!("{effect} has no {parameter}"));
+                assert_eq!(si(effect, parameter, None, unit), Ok((1.0, unit)));
+            }
         }
     }
 }
