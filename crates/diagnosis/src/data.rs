@@ -4,6 +4,8 @@ use arm::Arm;
 use effects::Scales;
 use rayon::prelude::*;
 
+pub use recording::statistics;
+
 use crate::data::motion::{Chunk, Motions};
 use crate::error::DiagnosisError;
 use crate::options::Options;
@@ -18,7 +20,6 @@ pub mod motion;
 pub mod noise;
 pub mod rigid;
 pub mod signal;
-pub mod statistics;
 pub mod used;
 
 /// What is known before any fit: the filtered recordings, and the model along them.

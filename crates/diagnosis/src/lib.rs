@@ -37,6 +37,7 @@ mod trace;
 
 pub use agreement::{Agreement, agreement, searched};
 pub use data::input::Input;
+pub use data::statistics;
 pub use data::used::worth_using;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;

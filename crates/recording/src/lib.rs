@@ -48,6 +48,7 @@ mod rows;
 mod series;
 mod spikes;
 mod stamp;
+pub mod statistics;
 mod table;
 mod thinned;
 mod toml_error;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use diagnosis::statistics::quantile;
 use maud::Escaper;
 
 use crate::numbers;
-use crate::statistics::quantile;
 
 /// A linear map from values to positions in the figure.
 #[derive(Clone, Copy)]

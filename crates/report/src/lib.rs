@@ -26,7 +26,6 @@ mod page;
 mod regions;
 pub mod score;
 mod shell;
-pub mod statistics;
 pub mod terminal;
 pub mod words;
 

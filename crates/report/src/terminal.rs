@@ -5,9 +5,9 @@ use std::fmt::Write;
 
 use arm::{Arm, JointKind};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
+use diagnosis::statistics::rms;
 use diagnosis::{Finding, Located, NotObservable, Report, Unexplained};
 
-use crate::statistics::rms;
 use crate::{alternatives, doubts, next_words, numbers, regions, words};
 
 pub(crate) mod steps;

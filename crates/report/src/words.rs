@@ -4,11 +4,11 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use arm::JointKind;
+use diagnosis::statistics::rms;
 use diagnosis::{Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use effects::Regressor;
 
 use crate::numbers;
-use crate::statistics::rms;
 
 /// The verdict states the largest held-out error with the effects found if it is at least this (over the torque's standard
 /// deviation).

@@ -4,11 +4,11 @@ use arm::Arm;
 use diagnosis::{Diagnosis, Input, JointRollout, Report, Step, Trace};
 use effects::Effect;
 use recording::RegularRecording;
+use recording::statistics::{mean_square, moments};
 
 use crate::error::ValidateError;
 use crate::learned::{self, LearnedOptions, RecordedMotion};
 use crate::rollout::{RolloutOptions, rollout};
-use crate::statistics::{mean_square, variance};
 
 /// A complete report.
 #[derive(Clone, Debug)]
@@ -106,7 +106,7 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
                 }
             }
         }
-        let power = variance(&torques);
+        let (_, power) = moments(torques.iter());
         if let Some(fit) = report.fit.get_mut(&described.name) {
             fit.held_out_nrmse_learned = (power > 0.0).then(|| (mean_square(misses) / power).sqrt());
         }

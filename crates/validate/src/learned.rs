@@ -142,9 +142,9 @@ fn training_rows(training: &[RecordedMotion<'_>], samples: usize) -> Vec<(usize,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::mean_square;
     use effects::Effect;
     use effects::friction::ViscousFriction;
+    use recording::statistics::mean_square;
     use std::time::Instant;
     use torque::Corrected;
 

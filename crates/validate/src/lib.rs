@@ -25,7 +25,6 @@ mod error;
 pub mod learned;
 mod nearest_body;
 pub mod rollout;
-mod statistics;
 
 pub use complete::{Complete, complete};
 pub use error::ValidateError;

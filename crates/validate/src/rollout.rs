@@ -16,11 +16,11 @@ use diagnosis::JointRollout;
 use effects::Effect;
 use effects::arm::Payload;
 use recording::RegularRecording;
+use recording::statistics::mean_square;
 
 use self::start::Start;
 use self::variant::Variant;
 use crate::error::ValidateError;
-use crate::statistics::mean_square;
 
 /// Options of a rollout.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use crate::data::input::Input;
 use crate::data::measure;
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
-use crate::data::statistics::{mean, quantile};
+use crate::data::statistics::{mean_square, quantile_of_sorted};
 use crate::thresholds::{
     CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_STEP, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL,
     IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
@@ -118,7 +118,7 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     if rows.torque.len() < LEAST_CHANNEL_ROWS {
         return None;
     }
-    let power = |signal: &[f64]| mean(signal.iter().map(|value| value * value));
+    let power = |signal: &[f64]| mean_square(signal.iter().copied());
     let size = (power(&rows.torque) / power(&rows.needed).max(f64::MIN_POSITIVE)).sqrt();
     if size < FAR_TOO_SMALL {
         return Some(Why::FarTooSmall(size));
@@ -130,7 +130,7 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
         // A drive that reports the torque that is commanded reaches its limit: only the part below the limit moves the joint.
         let mut sizes: Vec<f64> = rows.torque.iter().map(|tau| tau.abs()).collect();
         sizes.sort_by(f64::total_cmp);
-        let limits = CHANNEL_LIMITS.map(|share| quantile(&sizes, share));
+        let limits = CHANNEL_LIMITS.map(|share| quantile_of_sorted(&sizes, share));
         let clipped = |limit: f64| {
             rows.torque
                 .iter()
@@ -203,7 +203,7 @@ fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
     let scaled: Vec<f64> = columns
         .iter()
-        .map(|column| 1.0 / mean(column.iter().map(|v| v * v)).sqrt().max(1e-12))
+        .map(|column| 1.0 / mean_square(column.iter().copied()).sqrt().max(1e-12))
         .collect();
     let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
     let length = y.len().div_ceil(CHANNEL_FOLDS);

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
-use crate::data::statistics::{deviation, mean, quantile};
+use crate::data::statistics::{deviation, mean, quantile_of_sorted};
 use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
@@ -139,7 +139,7 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
     for joint in 0..motions.dof {
         let speeds = sorted(&|chunk| chunk.qd[joint].iter().map(|v| v.abs()).collect());
         let positions = sorted(&|chunk| chunk.q[joint].clone());
-        let speed = quantile(&speeds, SPEED_QUANTILE);
+        let speed = quantile_of_sorted(&speeds, SPEED_QUANTILE);
         let noise = motions
             .sources
             .iter()
@@ -148,8 +148,8 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
         scales.speed.push(speed);
         scales.rest.push((REST * speed).max(REST_NOISE * noise).max(1e-6));
         let (low, high) = (
-            quantile(&positions, RANGE_QUANTILES.0),
-            quantile(&positions, RANGE_QUANTILES.1),
+            quantile_of_sorted(&positions, RANGE_QUANTILES.0),
+            quantile_of_sorted(&positions, RANGE_QUANTILES.1),
         );
         scales.middle.push(0.5 * (low + high));
         scales.range.push((high - low).max(1e-6));

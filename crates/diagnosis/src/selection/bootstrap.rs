@@ -7,7 +7,7 @@ use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::data::statistics::{NORMAL_95, quantile};
+use crate::data::statistics::{NORMAL_95, quantile_of_sorted};
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
@@ -59,7 +59,7 @@ impl Resampled {
         }
         draws.sort_by(f64::total_cmp);
         // Half the interquartile range of a normal distribution is 0.6745 of its standard deviation.
-        let spread = (quantile(&draws, 0.75) - quantile(&draws, 0.25)) / (2.0 * 0.6745);
+        let spread = (quantile_of_sorted(&draws, 0.75) - quantile_of_sorted(&draws, 0.25)) / (2.0 * 0.6745);
         let half = self.inflation * NORMAL_95 * spread + systematic * value.abs();
         (value, [value - half, value + half])
     }

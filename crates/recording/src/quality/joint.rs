@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::measures;
 use super::slopes::Slopes;
+use crate::statistics::quantile;
 use crate::{Recording, RegularRecording};
 
 /// The smallest range of a motion (rad or m).
@@ -60,7 +61,7 @@ impl JointQuality {
         let mut speeds: Vec<f64> = measures::inner(&regular.segments, motion.side)
             .map(|tick| motion.speed[tick].abs())
             .collect();
-        let speed_max = measures::quantile(&mut speeds, 1.0);
+        let speed_max = quantile(&mut speeds, 1.0);
         let unsure = motion.gain * q_noise.max(q_step.unwrap_or(0.0) / 12.0_f64.sqrt());
         let range = high - low;
         let wide = range > LEAST_RANGE.max(10.0 * q_noise).max(20.0 * q_step.unwrap_or(0.0));

@@ -1,6 +1,7 @@
 //! Properties of one signal: its range, noise, quantiser and plateaus.
 
 use crate::Segment;
+use crate::statistics::quantile;
 
 /// The largest number of samples of an estimate.
 pub const SAMPLES: usize = 100_000;
@@ -21,15 +22,6 @@ pub fn inner(segments: &[Segment], side: usize) -> impl Iterator<Item = usize> +
     segments
         .iter()
         .flat_map(move |segment| (segment.ticks.start + side..segment.ticks.end.saturating_sub(side)).step_by(stride))
-}
-
-/// The quantile of `values` at `share`; 0 if there are none.
-pub fn quantile(values: &mut [f64], share: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let at = ((values.len() - 1) as f64 * share).round() as usize;
-    *values.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
 /// The standard deviation of the white noise in a signal, from its distance to the cubic through four neighbours.

@@ -1,5 +1,6 @@
 //! Figures of residuals against a state, without and with an effect, and of the torque of the effect.
 
+use diagnosis::statistics::quantile;
 use diagnosis::{Finding, Trace};
 
 use super::against::Against;
@@ -7,7 +8,6 @@ use super::figures::{Figures, LEFT};
 use super::zoom::{Axis, Cell, Data, Series, differences};
 use crate::chart::{Scale, Svg, sampled};
 use crate::numbers;
-use crate::statistics::quantile;
 
 const PANEL: [f64; 2] = [530.0, 300.0];
 

@@ -1,13 +1,13 @@
 //! The residual of a joint in time, before and after.
 
 use arm::Arm;
+use diagnosis::statistics::quantile;
 use diagnosis::{TimeWindow, Trace, Traces};
 use effects::Quantity;
 
 use super::zoom::{Axis, Cell, Data, Panel, Series, differences};
 use crate::chart::{Scale, Svg, thinned};
 use crate::numbers;
-use crate::statistics::quantile;
 
 /// The data that all figures of a page are drawn from.
 pub struct Figures<'a> {

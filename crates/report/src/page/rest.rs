@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use arm::JointKind;
+use diagnosis::statistics::quantile;
 use diagnosis::{NotObservable, Trace};
 use maud::{Markup, html};
 
 use super::table::{name, number, table, words as words_column};
 use super::{Page, Section};
-use crate::statistics::quantile;
 use crate::{next_words, numbers, terminal, words};
 
 impl Page<'_> {

@@ -3,6 +3,7 @@
 use report::numbers::rounded;
 
 use super::{Harm, Report, Row, short};
+use crate::tables::mean;
 
 /// The report.
 pub fn text(report: &Report) -> String {
@@ -58,10 +59,6 @@ fn parts(row: &Row, errors: &[f64]) -> Vec<f64> {
         .zip(&row.rigid)
         .map(|(error, rigid)| error / rigid)
         .collect()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 fn names(tasks: &[String]) -> String {

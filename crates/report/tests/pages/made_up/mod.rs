@@ -5,12 +5,12 @@ mod motion;
 use std::collections::BTreeMap;
 
 use arm::Arm;
+use diagnosis::statistics::rms;
 use diagnosis::{
     Axis, Confusable, Dependence, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place,
     RecordingNames, Region, Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
 use effects::{Effect, Kind, Regressor};
-use report::statistics::rms;
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
 

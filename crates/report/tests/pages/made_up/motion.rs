@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use arm::Arm;
 use diagnosis::Trace;
-use report::statistics::rms;
+use diagnosis::statistics::rms;
 
 const NAMES: [&str; 7] = [
     "shoulder_pan_joint",

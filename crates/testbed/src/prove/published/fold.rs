@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use diagnosis::statistics::rms;
 use report::numbers::nrmse;
-use report::statistics::rms;
 use scoring::{HeldOutErrors, RobotScore};
 
 /// The columns of errors, of a robot or of a joint.

@@ -1,8 +1,8 @@
 //! The closed loop on a case's machine: computed torque with the same gains for all models.
 
 use arm::Arm;
+use diagnosis::statistics;
 use faults::{CaseMachine, FaultError, VelocityFilter};
-use report::statistics;
 use torque::{Command, Controller, RigidBody};
 
 use super::course::Course;
