@@ -9,6 +9,7 @@ mod proposal;
 mod smooth;
 mod thresholds;
 mod torque_unit;
+pub mod turns;
 mod wording;
 
 use arm::Arm;

@@ -16,10 +16,10 @@ use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingErr
 use self::independent::Stretches;
 pub use self::joints::in_order_of;
 use self::joints::{order, reordered};
+use crate::check::turns;
 use crate::check::{self, Layout, MisfitKind};
 use crate::named;
 use crate::notes::{Kind, Notes, shortened};
-use crate::turns;
 
 /// A recording to be read for a diagnosis.
 #[derive(Clone, Debug)]

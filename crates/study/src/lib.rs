@@ -40,7 +40,6 @@ pub mod notes;
 mod request;
 pub mod robot;
 mod source;
-pub mod turns;
 pub mod urdf_file;
 pub mod urdf_friction;
 

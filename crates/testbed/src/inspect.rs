@@ -7,10 +7,10 @@ use anyhow::{Context, bail};
 use arm::Arm;
 use recording::{ColumnMap, Quality, Recording, Warning};
 use serde::Serialize;
-use study::check::MisfitKind;
+use study::check::{MisfitKind, turns};
 use study::notes::shortened;
 use study::robot::{self, RobotFile};
-use study::{check, inputs, named, turns};
+use study::{check, inputs, named};
 
 use crate::cli::InspectArgs;
 use crate::output::{self, OutputFile};

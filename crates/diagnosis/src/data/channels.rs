@@ -11,12 +11,9 @@ use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{mean_square, quantile_of_sorted};
 use crate::thresholds::{
-    CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_STEP, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL,
-    IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
+    CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_RIDGE, CHANNEL_STEP, EXPLAINS_THE_LIMITED,
+    FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
 };
-
-/// The ridge of the regression, relative to columns of unit power, against collinear columns.
-const RIDGE: f64 = 1e-4;
 
 /// Why a channel holds no torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,7 +224,7 @@ fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     for (k, fold) in folds.iter().enumerate() {
         let rest = (0..CHANNEL_FOLDS).filter(|&other| other != k);
         let rows = (y.len() - fold.len()).max(1) as f64;
-        let (mut gram, mut right, mut sum) = (DMatrix::identity(n, n) * (RIDGE * rows), DVector::zeros(n), 0.0);
+        let (mut gram, mut right, mut sum) = (DMatrix::identity(n, n) * (CHANNEL_RIDGE * rows), DVector::zeros(n), 0.0);
         for other in rest {
             gram += &sums[other].0;
             right += &sums[other].1;

@@ -11,6 +11,10 @@ use crate::thresholds::{
     CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, WORTH_RAISING,
 };
 
+/// The noise of the acceleration grows with this power of the cut-off, because white noise of the positions has the power 5 in the
+/// variance of their second derivative.
+const NOISE_GROWTH: f64 = 2.5;
+
 /// Filters `inputs` with the second filter at `cutoff` (Hz), or at the highest frequency that the slowest recording
 /// allows. Without a `cutoff`, it follows from the data: it is higher than usual if the motion is quick, and lower if
 /// the noise of the positions would be a large part of the torques of `arm`.
@@ -35,8 +39,7 @@ pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions
     }
     let (share, joint) = noise_share(&motions, arm);
     if share > MOST_NOISE {
-        // The noise of the acceleration grows with the power 5/2 of the cut-off.
-        let quiet = motions.cutoff * (MOST_NOISE / share).powf(0.4);
+        let quiet = motions.cutoff * (MOST_NOISE / share).powf(1.0 / NOISE_GROWTH);
         let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);
         let before = motions.cutoff;
         motions = at(quiet.max(least));

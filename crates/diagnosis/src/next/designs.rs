@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use torque::{Fade, Reference, Sine};
 
 use super::limits::{Limits, rounded, taken};
+use crate::thresholds::{SLOW_AND_FAST, TRIED_AMPLITUDES, TRIED_SPEEDS};
 
 /// The duration of a motion (s).
 pub const DURATION: f64 = 25.0;
@@ -59,8 +60,8 @@ pub struct Design {
 pub fn all() -> Vec<Design> {
     let mut list = Vec::new();
     for mix in [Mix::Steady, Mix::Beats, Mix::Swells, Mix::SlowAndFast] {
-        for speed in [0.4, 1.0] {
-            for amplitude in [0.65, 1.0] {
+        for speed in TRIED_SPEEDS {
+            for amplitude in TRIED_AMPLITUDES {
                 list.push(Design {
                     mix,
                     speed,
@@ -131,14 +132,15 @@ impl Design {
                 continue;
             }
             for (tone, sine) in sines.iter_mut().enumerate() {
+                // The parts of the sines add up to the whole distance and the whole speed.
                 let (room, fast) = match (self.mix, tone) {
                     (Mix::Steady, _) => (room, fast),
                     (Mix::Beats | Mix::Swells, 0) => (0.5 * room, 0.5 * fast),
                     (Mix::Beats, _) => (0.5 * room, 0.5 * (1.0 - DETUNED) * fast),
                     (Mix::Swells, 1) => (0.25 * room, 0.25 * (1.0 - DETUNED) * fast),
                     (Mix::Swells, _) => (0.25 * room, 0.25 * (1.0 - 2.0 * DETUNED) * fast),
-                    (Mix::SlowAndFast, 0) => (0.7 * room, SLOW * fast),
-                    (Mix::SlowAndFast, _) => (0.3 * room, (1.0 - SLOW) * fast),
+                    (Mix::SlowAndFast, 0) => (SLOW_AND_FAST.0 * room, SLOW * fast),
+                    (Mix::SlowAndFast, _) => (SLOW_AND_FAST.1 * room, (1.0 - SLOW) * fast),
                 };
                 let turn = (GOLDEN * (tones * j + tone + 1) as f64).fract();
                 let wanted = fast / (TAU * room) * (1.0 - DETUNED * turn);

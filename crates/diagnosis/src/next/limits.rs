@@ -9,7 +9,7 @@ use crate::data::Data;
 use crate::data::statistics::median;
 use crate::report::JointLimits;
 use crate::thresholds::{
-    BEYOND_RECORDED, BEYOND_UNEXPLAINED, FASTER_UNLIMITED, LIMIT_MARGIN, STRONGER_UNLIMITED, WITHIN_LIMITS,
+    BEYOND_RECORDED, BEYOND_UNEXPLAINED, FASTER_UNLIMITED, HELD_STILL, LIMIT_MARGIN, STRONGER_UNLIMITED, WITHIN_LIMITS,
 };
 
 /// The allowed motion of each joint.
@@ -73,7 +73,7 @@ impl Limits {
             let (half, speed) = if scales.speed[j] > scales.rest[j] {
                 (wider * recorded, scales.speed[j])
             } else {
-                (typical, 0.3 * fastest)
+                (typical, HELD_STILL * fastest)
             };
             limits.room.push(half.min(to_a_limit));
             limits.speed.push(if joint.limits.velocity.is_finite() {

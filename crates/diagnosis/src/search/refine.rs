@@ -6,17 +6,7 @@ use rayon::prelude::*;
 use crate::data::statistics::mean;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
-
-/// The factors on a size in each round of refinement.
-const ROUNDS: [[f64; 4]; 4] = [
-    [0.75, 0.87, 1.15, 1.33],
-    [0.9, 0.95, 1.05, 1.1],
-    [0.965, 0.983, 1.017, 1.035],
-    [0.988, 0.994, 1.006, 1.012],
-];
-
-/// The first step of an onset (s).
-const ONSET_STEP: f64 = 0.4;
+use crate::thresholds::{FINER_STEPS, OTHER_FORM_SIZES, REFINED_ONSET, REFINED_SIZES, REFINED_STEPS, SECOND_SIZE_STEP};
 
 /// The sizes of terms that have intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
@@ -48,7 +38,7 @@ fn found_onset(term: &Term, changed_at: Option<f64>) -> Option<f64> {
 /// The other form of terms, at the sizes at which it is most similar.
 fn forms(terms: &[Term], changed_at: Option<f64>) -> Vec<Vec<Term>> {
     let mut list = Vec::new();
-    for factor in [0.7, 1.0, 1.4] {
+    for factor in OTHER_FORM_SIZES {
         let mut other = terms.to_vec();
         let mut changed = false;
         for term in &mut other {
@@ -83,7 +73,10 @@ fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
 /// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg), `changed_at` the
 /// time of a change between the recordings (s).
 fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) -> Vec<Vec<Term>> {
-    let mut list: Vec<Vec<Term>> = ROUNDS[round].iter().map(|&factor| resized(terms, factor)).collect();
+    let mut list: Vec<Vec<Term>> = REFINED_SIZES[round]
+        .iter()
+        .map(|&factor| resized(terms, factor))
+        .collect();
     list.retain(|terms| !terms.is_empty());
     // The stiffness and the damping of a spring are coupled, as are a gap and its compliant ends: all combinations of sizes
     // are tried.
@@ -91,7 +84,7 @@ fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) ->
         .into_iter()
         .find(|second| sizes(terms).contains(second));
     if let Some(second) = second {
-        let steps = [-1.0, -0.4, 0.4, 1.0].map(|step: f64| (1.2 * step * 0.25_f64.powi(round as i32)).exp());
+        let steps = REFINED_STEPS.map(|step| (SECOND_SIZE_STEP * step * FINER_STEPS.powi(round as i32)).exp());
         let stiffer = list.clone();
         for terms in stiffer.into_iter().chain([terms.to_vec()]) {
             list.extend(steps.map(|factor| varied(&terms, second, factor)));
@@ -105,7 +98,7 @@ fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) ->
         Vec::new()
     });
     // A finer step of a ripple's period, relative to one period over the range.
-    let nudges = [-1.0, -0.4, 0.4, 1.0].map(|step| step * 0.25_f64.powi(round as i32));
+    let nudges = REFINED_STEPS.map(|step| step * FINER_STEPS.powi(round as i32));
     for kind in 0..NUDGES {
         for step in nudges {
             let nudged = terms.iter().map(|term| nudged(term, kind, step, changed_at));
@@ -148,7 +141,7 @@ const NUDGES: usize = 3;
 /// A term after a finer step of the `kind`; `None` if there is no such step.
 fn nudged(term: &Term, kind: usize, step: f64, changed_at: Option<f64>) -> Option<Term> {
     match found_onset(term, changed_at) {
-        Some(from) => (kind == 0).then(|| term.since(from + ONSET_STEP * step)),
+        Some(from) => (kind == 0).then(|| term.since(from + REFINED_ONSET * step)),
         None => term.law.nudges.get(kind).map(|nudge| nudge(term, step)),
     }
 }
@@ -166,7 +159,7 @@ pub fn refine(study: &mut Study, selected: Selection, again: bool) -> Selection 
 
 /// Refines the sizes in `selected`; all members stay, in their order.
 pub fn resize(study: &mut Study, mut selected: Selection, again: bool) -> Selection {
-    for round in (if again { 2 } else { 0 })..ROUNDS.len() {
+    for round in (if again { 2 } else { 0 })..REFINED_SIZES.len() {
         let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
         let mut missing = Vec::new();
         for &member in &selected.set {

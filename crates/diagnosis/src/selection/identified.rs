@@ -6,10 +6,7 @@ use crate::regression::strengths::Strengths;
 use crate::regression::table::Moving;
 use crate::search::study::Study;
 use crate::selection::predict::errors_with;
-
-/// The standard deviation of the prior on inertial parameters, in multiples of their size. It is so wide that it only
-/// regularises the normal equations.
-const FREE: f64 = 3.0;
+use crate::thresholds::FREE_INERTIALS;
 
 /// The held-out error (NRMSE) of each joint with least squares on all inertial parameters, and on viscous and Coulomb friction,
 /// drive inertia and a constant of every joint. It is fitted to, and measured on, the rows of the final fit, which include those near
@@ -17,7 +14,7 @@ const FREE: f64 = 3.0;
 pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let dof = study.data.arm.dof();
     let strengths = Strengths {
-        links: vec![FREE; dof],
+        links: vec![FREE_INERTIALS; dof],
         ..Strengths::none(dof)
     };
     let is_part = |&candidate: &usize| {

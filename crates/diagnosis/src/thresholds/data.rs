@@ -40,6 +40,8 @@ pub const FAR_TOO_SMALL: f64 = 0.05;
 pub const UNRELATED: f64 = 0.97;
 /// A channel whose values are clipped at some limit is a torque if the models have at most this error there (NRMSE).
 pub const EXPLAINS_THE_LIMITED: f64 = 0.6;
+/// The ridge of these models, relative to columns of unit power, against collinear columns.
+pub const CHANNEL_RIDGE: f64 = 1e-4;
 /// A dead channel varies by less than this part of the variation of the model's torque, and by no more than [`NOISE_ALONE`]
 /// allows.
 pub const DEAD: f64 = 0.05;

@@ -143,3 +143,6 @@ pub const CONTACT_DURATION: f64 = 0.2;
 pub const SPECIAL_FORMS_TRIED: usize = 4;
 /// The largest number of these alternatives. Source: as for [`SPECIAL_FORMS_TRIED`].
 pub const MOST_SPECIAL_FORMS: usize = 3;
+/// In the control by full identification, the standard deviation of the prior on inertial parameters, in multiples of their size. It is so
+/// wide that it only regularises the normal equations.
+pub const FREE_INERTIALS: f64 = 3.0;

@@ -24,3 +24,11 @@ pub const BEYOND_UNEXPLAINED: (f64, f64) = (1.0, 1.5);
 pub const FASTER_UNLIMITED: f64 = 2.0;
 /// Without an effort limit in the URDF: the largest torque as a multiple of the recorded one.
 pub const STRONGER_UNLIMITED: f64 = 1.5;
+/// The largest speed of a joint that was held still, as a part of that of the fastest joint.
+pub const HELD_STILL: f64 = 0.3;
+/// The parts of the allowed speed with which each motion is tried.
+pub const TRIED_SPEEDS: [f64; 2] = [0.4, 1.0];
+/// The parts of the allowed distance from the middle with which each motion is tried.
+pub const TRIED_AMPLITUDES: [f64; 2] = [0.65, 1.0];
+/// The parts of the distance that the large slow sine and the small fast one of a motion take.
+pub const SLOW_AND_FAST: (f64, f64) = (0.7, 0.3);

@@ -33,6 +33,10 @@ pub const WAVE_CUTOFF: f64 = 0.7;
 /// The time from either end of the recordings to the first onset that is tried (s). Source: selected on `prove`, seeds
 /// 7 and 2026.
 pub const ONSET_FROM_END: f64 = 2.0;
+/// The time between the onsets that are tried (s).
+pub const TRIED_ONSETS: f64 = 0.5;
+/// The time between the onsets that are tried around the best one (s).
+pub const FINE_ONSETS: f64 = 0.05;
 /// If a model omits the inertias of this many drives, it probably omits those of all drives. Source: simulated cases of
 /// `prove`, seeds 1 and 2, and of two sets made with MuJoCo.
 pub const TELLING_DRIVES: usize = 2;
@@ -63,6 +67,23 @@ pub const MOST_SELECTED: usize = 60;
 pub const MOST_SUGGESTIONS: usize = 3;
 /// The largest number of rounds of refinement. Source: first diagnosis.
 pub const MOST_REFINEMENTS: usize = 2;
+/// The factors on a size in each round of its refinement.
+pub const REFINED_SIZES: [[f64; 4]; 4] = [
+    [0.75, 0.87, 1.15, 1.33],
+    [0.9, 0.95, 1.05, 1.1],
+    [0.965, 0.983, 1.017, 1.035],
+    [0.988, 0.994, 1.006, 1.012],
+];
+/// The steps of a second size, of a ripple's period and of an onset in the first round of refinement, relative to the largest one.
+pub const REFINED_STEPS: [f64; 4] = [-1.0, -0.4, 0.4, 1.0];
+/// The ratio of these steps to those of the round before.
+pub const FINER_STEPS: f64 = 0.25;
+/// The largest step of the logarithm of a second size: of a spring's damping, or of the stiffness of a gap's ends.
+pub const SECOND_SIZE_STEP: f64 = 1.2;
+/// The largest step of an onset (s).
+pub const REFINED_ONSET: f64 = 0.4;
+/// The factors on the size with which the other form of an effect is tried.
+pub const OTHER_FORM_SIZES: [f64; 3] = [0.7, 1.0, 1.4];
 /// The largest number of consecutive swaps. Source: first diagnosis.
 pub const MOST_SWAPS: usize = 4;
 /// The largest number of last additions. Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.

@@ -25,11 +25,19 @@ fn rows(file: &str, source: &str) -> String {
     let mut rows = String::new();
     let mut words: Vec<&str> = Vec::new();
     let source = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or(source);
-    for line in source.lines().map(str::trim) {
+    let mut lines = source.lines().map(str::trim);
+    while let Some(line) = lines.next() {
         if let Some(doc) = line.strip_prefix("/// ") {
             words.push(doc);
             continue;
         }
+        let mut line = line.to_owned();
+        // A list of lists stands on several lines.
+        if line.contains("const ") && line.ends_with(" = [") {
+            let inner: Vec<&str> = lines.by_ref().take_while(|&part| part != "];").collect();
+            line += &format!("{}];", inner.join(" ").trim_end_matches(','));
+        }
+        let line = line.as_str();
         let constant = line.strip_prefix("pub ").unwrap_or(line).strip_prefix("const ");
         let constant = constant.and_then(|line| line.split_once(" = "));
         let field = line.strip_suffix(',').and_then(|line| line.split_once(": "));

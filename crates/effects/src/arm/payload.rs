@@ -253,6 +253,9 @@ impl EffectKind for Payload {
     }
 }
 
+/// The least reach of an arm (m), which limits the distance of a payload.
+const LEAST_REACH: f64 = 0.2;
+
 /// The sum of the distances from joint to joint (m).
 fn reach(arm: &Arm) -> f64 {
     let links: f64 = arm
@@ -260,7 +263,7 @@ fn reach(arm: &Arm) -> f64 {
         .iter()
         .map(|joint| joint.parent_from_joint.translation.norm())
         .sum();
-    (links + arm.tool_frame().link_from_frame.translation.norm()).max(0.2)
+    (links + arm.tool_frame().link_from_frame.translation.norm()).max(LEAST_REACH)
 }
 
 #[cfg(test)]

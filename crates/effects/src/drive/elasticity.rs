@@ -56,6 +56,8 @@ fn link_side(term: &Term, motion: &crate::Signals<'_>) -> LinkSide {
     LinkSide::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
 }
 
+/// The frequencies at which the link swings on the springs that are tried first (Hz).
+const RESONANCES: [f64; 8] = [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0];
 /// The damping ratio that is tried first. Source: first diagnosis.
 const DAMPING_RATIO: f64 = 0.06;
 /// The frequencies over which noise is summed: up to a multiple of the cut-off, in steps that are narrow beside a resonance.
@@ -75,7 +77,7 @@ impl EffectKind for JointElasticity {
             if mass <= 0.0 {
                 continue;
             }
-            for hertz in [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0] {
+            for hertz in RESONANCES {
                 let omega = 2.0 * std::f64::consts::PI * hertz;
                 let sizes = [mass * omega * omega, 2.0 * DAMPING_RATIO * mass * omega];
                 let terms = vec![

@@ -62,18 +62,20 @@ const BELOW_NEED: f64 = 0.45;
 /// joint arm_1 a limit of 3.4 N m was named beside 3.3 N m of friction.
 const LEAST_OVER_FRICTION: f64 = 1.3;
 
+/// The limits that are tried first, as shares of the largest commanded torque.
+const LIMITS: [f64; 11] = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
+/// The limits that are tried first beside [`LIMITS`]: a position loop may command many times the torque that the drive can give.
+const WOUND_UP: [f64; 7] = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
+
 impl EffectKind for TorqueSaturation {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        // A position loop may command many times the torque that the drive can give.
-        let wound_up = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
-        let usual = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
         let mut forms = Vec::new();
         for joint in grounds.moving() {
-            for share in wound_up.into_iter().chain(usual) {
+            for share in WOUND_UP.into_iter().chain(LIMITS) {
                 let limit = share * grounds.largest[joint];
                 // A drive that gave this torque is not limited far below it.
                 if limit < BELOW_NEED * grounds.needed[joint] {

@@ -88,6 +88,11 @@ const FADED: f64 = 0.5;
 /// The part of the moving rows that may be slow: otherwise the effect is no friction at low speed.
 const MOST_SLOW: f64 = 0.5;
 
+/// The velocities at which the friction has fallen that are tried first, as shares of the largest speed.
+const VELOCITIES: [f64; 6] = [0.05, 0.08, 0.12, 0.18, 0.27, 0.4];
+/// The exponents that are tried first.
+const EXPONENTS: [f64; 2] = [1.0, 2.0];
+
 impl EffectKind for StribeckFriction {
     fn spec(&self) -> &'static Spec {
         &SPEC
@@ -96,8 +101,8 @@ impl EffectKind for StribeckFriction {
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let mut forms = Vec::new();
         for joint in grounds.moving() {
-            for share in [0.05, 0.08, 0.12, 0.18, 0.27, 0.4] {
-                for exponent in [1.0, 2.0] {
+            for share in VELOCITIES {
+                for exponent in EXPONENTS {
                     let fading = Term::on(&FADING, joint).sized([share * grounds.scales.speed[joint], exponent]);
                     forms.push(Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint), fading]));
                 }

@@ -78,13 +78,16 @@ const REFINED: f64 = 0.7;
 /// The largest additional friction of a cold drive, as a multiple of the warm friction. Source: first diagnosis.
 const MOST_COLD: f64 = 4.0;
 
+/// The time constants that are tried first, as shares of the time from the first recording to the last.
+const TIME_CONSTANTS: [f64; 5] = [0.15, 0.25, 0.4, 0.6, 1.0];
+
 impl EffectKind for ThermalDrift {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let constants = [0.15, 0.25, 0.4, 0.6, 1.0].map(|share| share * grounds.span.unwrap_or(0.0));
+        let constants = TIME_CONSTANTS.map(|share| share * grounds.span.unwrap_or(0.0));
         // A drive does not warm up faster than this.
         let constants: Vec<f64> = constants.into_iter().filter(|time| *time >= FASTEST_WARMING).collect();
         let start = start(grounds.times.first().map_or(0.0, |&(begins, _)| begins));

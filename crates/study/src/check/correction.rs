@@ -5,6 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use arm::{Arm, JointKind, Vector3};
 use recording::RegularRecording;
 
+use super::thresholds::OTHER_BASE;
+
 /// What may be wrong in a recording's columns, and is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Correction {
@@ -77,7 +79,7 @@ impl Correction {
         let strength = arm.gravity().norm();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         let directions = axes.into_iter().flat_map(|axis| [axis * strength, -axis * strength]);
-        let others = directions.filter(|gravity| (gravity - arm.gravity()).norm() > 0.1 * strength);
+        let others = directions.filter(|gravity| (gravity - arm.gravity()).norm() > OTHER_BASE * strength);
         others.map(Self::Gravity).collect()
     }
 

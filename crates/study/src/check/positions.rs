@@ -11,8 +11,8 @@ use super::correction::Correction;
 use super::fit::fit;
 use super::smooth::Smooth;
 use super::thresholds::{
-    BEYOND_RANGE, LIMIT_SLACK, MOST_SPAN, MOST_SPEED, MOTOR_SIDE, ONE_IN_DEGREES, SAME_SLOPE, SAME_UNIT, SLACK,
-    SLOWEST_PERIOD, TURN_FACTORS, UNIT_LEAD,
+    BEYOND_RANGE, LIMIT_SLACK, MOST_SPAN, MOST_SPEED, MOTOR_SIDE, ONE_IN_DEGREES, SAME_SLOPE, SAME_SPEED, SAME_UNIT,
+    SLACK, SLOWEST_PERIOD, TURN_FACTORS, UNIT_LEAD,
 };
 use super::{Misfit, MisfitKind};
 
@@ -308,7 +308,7 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
         .collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
     let same = ratios.len() == moving.len() && ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() < SAME_SLOPE);
-    let hint = if same && !(0.8..1.25).contains(&mean) {
+    let hint = if same && !SAME_SPEED.contains(&mean) {
         format!(
             "; the recorded velocities are {} times the positions' slopes on all of them, so that the time stamps are probably \
              too close by that factor",

@@ -17,7 +17,7 @@ use super::thresholds::{
     ONE_CONTRADICTS_IN, OVERWHELMING, REDUCED, REPORTED, REPORTED_WHERE_EXPLAINED, SUPPORTS, UNEXPLAINED, WEIGHED,
     WORTH_WEIGHING,
 };
-use crate::turns;
+use super::turns;
 
 /// A correction of the recordings' columns that is proposed.
 #[derive(Clone, Debug)]

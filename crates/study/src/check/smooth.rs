@@ -3,7 +3,7 @@
 use recording::RegularRecording;
 
 use super::thresholds::MOVES;
-use crate::turns::range;
+use super::turns::range;
 
 /// Half the span of a parabola (s).
 const HALF_SPAN: f64 = 0.04;

@@ -12,6 +12,9 @@ pub const MOST_SPEED: f64 = 5.0;
 pub const SAME_SLOPE: f64 = 0.04;
 /// The ratio of a position's slope to the recorded velocity with which both are in the same unit.
 pub const SAME_UNIT: Range<f64> = 0.5..2.0;
+/// The ratio of the recorded velocities to the positions' slopes with which the time stamps are probably right, where the speeds of all
+/// joints are far beyond the URDF's limits.
+pub const SAME_SPEED: Range<f64> = 0.8..1.25;
 /// Positions that span more than this may be in another unit (rad).
 pub const MOST_SPAN: f64 = 2.0 * std::f64::consts::TAU;
 /// Positions may be in another unit if they also span more than this multiple of the URDF's range. Many motions exceed the URDF's
@@ -21,6 +24,9 @@ pub const BEYOND_RANGE: f64 = 1.5;
 pub const SLACK: f64 = 0.1;
 /// Positions may exceed the URDF's limits by this without a warning (rad or m).
 pub const LIMIT_SLACK: f64 = 1e-2;
+/// Positions that exceed the URDF's limits by at most this are not moved into them by whole turns (rad), because many motions exceed them
+/// slightly.
+pub const TURNS_SLACK: f64 = 0.1;
 /// The factor by which torques may exceed the URDF's effort limit without a warning.
 pub const EFFORT_SLACK: f64 = 1.05;
 /// A unit of the positions must be better than another by at least this reduction of the mean log residual.
@@ -63,6 +69,8 @@ pub const NEAR_UNIT: Range<f64> = 0.5..2.0;
 
 /// The number of corrections of the columns (signs, order, zeros) that are weighed by their evidence.
 pub const WEIGHED: usize = 8;
+/// A base on a wall or on a ceiling is another one than the URDF's if gravity differs by more than this part.
+pub const OTHER_BASE: f64 = 0.1;
 /// A correction is weighed if it reduces the sum of the joints' log residuals in a recording by this much: the model is that of the
 /// URDF, so that other inertial parameters may hide most of the reduction.
 pub const WORTH_WEIGHING: f64 = 0.05;

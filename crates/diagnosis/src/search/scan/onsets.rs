@@ -8,11 +8,7 @@ use crate::data::Data;
 use crate::regression::small::explained;
 use crate::regression::table::Table;
 use crate::search::candidate::Hypothesis;
-use crate::thresholds::ONSET_FROM_END;
-
-/// The step between tried onsets, and the finer step around the best one (s).
-const STEP: f64 = 0.5;
-const FINE: f64 = 0.05;
+use crate::thresholds::{FINE_ONSETS, ONSET_FROM_END, TRIED_ONSETS};
 
 /// For each form on each joint, and for a payload, the candidate whose onset explains most of `residual` (N m or N, all
 /// rows). There are none if the recordings do not share one clock, because their order is unknown then.
@@ -98,17 +94,17 @@ impl Past<'_> {
         );
         let about = |found: f64| {
             [
-                (found - STEP).max(earliest + ONSET_FROM_END),
-                (found + STEP).min(latest - ONSET_FROM_END),
+                (found - TRIED_ONSETS).max(earliest + ONSET_FROM_END),
+                (found + TRIED_ONSETS).min(latest - ONSET_FROM_END),
             ]
         };
         let coarse = self.scan(
             joints,
             &columns,
             [earliest + ONSET_FROM_END, latest - ONSET_FROM_END],
-            STEP,
+            TRIED_ONSETS,
         )?;
-        self.scan(joints, &columns, about(coarse), FINE)
+        self.scan(joints, &columns, about(coarse), FINE_ONSETS)
     }
 
     /// The best of the onsets between two times, `step` from each other.

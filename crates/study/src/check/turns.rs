@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 use arm::{Arm, JointKind};
 use recording::Recording;
 
-/// By how much positions may exceed the limits (rad), as many motions do.
-const SLACK: f64 = 0.1;
+use super::thresholds::TURNS_SLACK;
 
 /// Moves positions of `recording` by whole turns into the limits of `arm`, if they lie beyond them, and says so of each joint. The
 /// torques do not depend on whole turns, but the positions in a report do.
@@ -69,7 +68,7 @@ fn nearest_turns(low: f64, high: f64, lower: f64, upper: f64) -> f64 {
 /// The whole turns by which a range lies beyond limits; 0 if it is within them, if no number of turns brings it there, or if there are
 /// no limits.
 fn turns_off(low: f64, high: f64, lower: f64, upper: f64) -> f64 {
-    let is_within = |turns: f64| low - turns * TAU >= lower - SLACK && high - turns * TAU <= upper + SLACK;
+    let is_within = |turns: f64| low - turns * TAU >= lower - TURNS_SLACK && high - turns * TAU <= upper + TURNS_SLACK;
     if upper <= lower || !low.is_finite() || !high.is_finite() || is_within(0.0) {
         return 0.0;
     }
