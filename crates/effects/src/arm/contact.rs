@@ -102,8 +102,8 @@ pub fn window(term: &Term) -> Option<[f64; 2]> {
     term.is(&FORCE).then_some([term.sizes[0], term.sizes[1]])
 }
 
-/// The largest force of a contact as a multiple of the arm's weight. The drives could not hold a larger one. Source:
-/// first diagnosis.
+/// The largest force of a contact as a multiple of the arm's weight under standard gravity, so that an arm without weight may have
+/// contacts. The drives could not hold a larger one. Source: first diagnosis.
 const MOST_CONTACT: f64 = 4.0;
 
 /// The shortest contact (s).
