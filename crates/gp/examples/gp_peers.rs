@@ -57,8 +57,8 @@ fn sparse(train: &str, test: &str, inducing: usize) {
 
 /// Processor time of this thread (s); where the system does not tell it, the time.
 fn clock() -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
+    let status = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = status.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
     nanoseconds.map_or_else(
         || {
             let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);

@@ -24,11 +24,11 @@ pub(crate) trait Likelihood {
     /// The number of observations, by which the likelihood is divided to be of order one.
     fn observations(&self) -> f64;
 
-    /// Gains that are no gain at `free`, nats.
+    /// The gain below which two likelihoods near `free` count as equal, nats.
     fn negligible(&self, free: &[f64]) -> f64;
 }
 
-/// A likelihood with what has been seen of it.
+/// A likelihood with the points at which it was evaluated.
 struct Climb<'a, L> {
     likelihood: &'a L,
     /// The last point asked for (the search asks for value and gradient separately), and the best one.
@@ -41,7 +41,7 @@ struct Seen {
     gradient: Vec<f64>,
     best: f64,
     best_at: Vec<f64>,
-    /// The tolerance, and what rounding makes of one likelihood near the floor of ρ, nats.
+    /// The tolerance plus the rounding error of one likelihood near the floor of ρ, nats.
     negligible: f64,
     /// Points looked at since the last gain that was not negligible.
     stalled: usize,
@@ -77,7 +77,7 @@ pub(crate) fn climb(
     let mut best = (f64::NEG_INFINITY, start.to_vec());
     let mut left = max_iterations;
     while left > 0 {
-        // A start whose likelihood is not finite is no start.
+        // A search cannot begin where the likelihood is not finite.
         if climb.look(&best.1).is_err() {
             break;
         }

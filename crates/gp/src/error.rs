@@ -88,7 +88,7 @@ pub enum GpError {
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with line and column where the text is at fault.
+        /// The reason, with line and column if the text is malformed.
         reason: String,
     },
 }

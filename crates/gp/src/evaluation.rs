@@ -8,7 +8,7 @@ pub(crate) struct Evaluation {
     pub(crate) quadratic: f64,
     /// log det C.
     pub(crate) log_determinant: f64,
-    /// What the bound of an approximation takes off, nats; 0 if C is exact.
+    /// The penalty of an approximation, which makes the likelihood a lower bound, nats; 0 if C is exact.
     pub(crate) penalty: f64,
 }
 

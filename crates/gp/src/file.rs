@@ -34,7 +34,7 @@ pub(crate) fn save(value: &impl Serialize, path: &Path) -> Result<(), GpError> {
     Ok(())
 }
 
-/// Reads what [`save`] wrote, of the version `expected`.
+/// Reads a file of [`save`], of the version `expected`.
 pub(crate) fn load<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T, GpError> {
     let text = fs::read_to_string(path).map_err(|source| GpError::File {
         path: path.to_owned(),

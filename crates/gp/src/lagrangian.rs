@@ -207,7 +207,7 @@ impl LagrangianGp {
         &self.prior
     }
 
-    /// The standard deviation of each joint's noise (N m or N), including what keeps the covariance matrix positive definite.
+    /// The standard deviation of each joint's noise (N m or N), including the part that keeps the covariance matrix positive definite.
     pub fn noise(&self) -> &[f64] {
         &self.noise
     }

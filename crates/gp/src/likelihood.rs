@@ -122,7 +122,7 @@ impl Factored {
         }
     }
 
-    /// Columns of the factor, and the trace of what it leaves of K.
+    /// The number of columns of the factor, and the trace of the part of K that it neglects.
     pub(crate) fn rank_and_neglected(&self) -> (usize, f64) {
         match self {
             Self::LowRank(low_rank) => (low_rank.pivoted().rank(), low_rank.pivoted().neglected),
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn gradient_agrees_with_finite_differences() {
         // Scatter, noise, ρ, trace neglected / ρ, whether low rank, tolerance relative to the largest component. The low-rank gradient sums
-        // large terms of both signs, the larger the smaller the last pivots: what is neglected and rounding, ε n / pivot, balance.
+        // large terms of both signs, which are larger for smaller last pivots: the neglected part and rounding, ε n / pivot, balance.
         for (scatter, noise, rho, neglected, low_rank, tolerance) in [
             (0.0, 1e-1, 1e-2, 1e-7, true, 1e-6),
             (0.0, 1e-2, 1e-4, 1e-6, true, 1e-5),

@@ -45,7 +45,7 @@ pub(crate) struct Maximum {
     pub(crate) curvature: Option<f64>,
 }
 
-/// What values tell of the maximum next to the largest of them.
+/// The estimate of the maximum next to the largest of some values.
 struct Outlook {
     /// The next place to look at, if there is any more to gain.
     next: Option<f64>,
@@ -86,7 +86,7 @@ impl<F: FnMut(f64) -> f64> Line<F> {
         true
     }
 
-    /// Climbs to the maximum next to the largest value. `curvature` is what is known beforehand.
+    /// Climbs to the maximum next to the largest value. `curvature` is known beforehand, if it is given.
     pub(crate) fn climb(&mut self, curvature: Option<f64>, goal: Goal) -> Maximum {
         loop {
             let better = |a: usize, i: usize| if self.known[i].1 > self.known[a].1 { i } else { a };

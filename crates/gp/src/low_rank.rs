@@ -156,7 +156,7 @@ impl LowRank {
         square
     }
 
-    /// What a truncated factor takes off the likelihood, so that it is a bound whatever the pivots: tr(K - F Fᵀ) / 2 ρ, nats.
+    /// The penalty on the likelihood for a truncated factor, which makes it a lower bound for any pivots: tr(K - F Fᵀ) / 2 ρ, nats.
     ///
     /// Source: Titsias 2009, "Variational learning of inducing variables in sparse Gaussian processes", eq. 9.
     fn penalty(&self) -> f64 {

@@ -192,7 +192,7 @@ impl Gp {
         }
     }
 
-    /// The hyperparameters; the noise includes what was added to the diagonal.
+    /// The hyperparameters; the noise includes the value that was added to the diagonal.
     pub fn hyperparameters(&self) -> &Hyperparameters {
         &self.hyperparameters
     }

@@ -35,7 +35,7 @@ struct Saved {
     motions: Vec<[f64; 4]>,
     /// One a sample and joint.
     weights: Vec<f64>,
-    /// What the torques of all samples leave of the support's variance: a lower triangle, row by row; null without noise.
+    /// The support's variance given the torques of all samples: a lower triangle, row by row; null without noise.
     projected: Option<Vec<f64>>,
 }
 

@@ -160,7 +160,7 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// Energies and relative noises of what the search varies.
+/// The energies and the relative noises of the variables of the search.
 pub(crate) fn split(values: &[f64], dof: usize) -> (LagrangianPrior, Vec<f64>) {
     let rho = values[LagrangianPrior::count(dof)..].iter().map(|log| log.exp());
     (LagrangianPrior::from_free(values, dof), rho.collect())

@@ -105,7 +105,7 @@ impl Wide for Mean<'_> {
 }
 
 impl Scratch {
-    /// Adds what the samples of one block contribute.
+    /// Adds the contribution of the samples of one block.
     #[inline(always)]
     fn add(&mut self, prior: &LagrangianPrior, motions: &Motions, block: usize, alpha: &[Lanes], at: &Spread) {
         let Self {
@@ -149,8 +149,8 @@ impl Scratch {
             h_a = h_a * below.value + h * below.first * weight;
             h *= below.value;
 
-            // s and its derivatives by the sample's time, by the time of the motion asked for, and by both; and what remains of
-            // them where the sample's speed is replaced by its weights (w).
+            // s and its derivatives by the sample's time, by the time of the requested motion, and by both; and their values
+            // where the sample's speed is replaced by its weights (w).
             let [mut s, mut t, mut u, mut tu, mut w, mut wu] = [Lanes::ZERO; 6];
             for (c, &sigma) in sigma.iter().enumerate() {
                 let (p, acc) = (at.velocity[c] * sigma, at.acceleration[c] * sigma);

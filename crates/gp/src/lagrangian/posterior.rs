@@ -1,4 +1,4 @@
-//! The posterior: the samples that carry it with their weights, and what its variance needs.
+//! The posterior: the samples that represent it with their weights, and the matrices of its variance.
 
 use faer::linalg::matmul::triangular::BlockStructure;
 use faer::{Accum, Mat, MatRef};
@@ -109,7 +109,7 @@ impl Posterior {
         .write();
     }
 
-    /// The variance at the workspace's motion: k_xx − |G⁻¹ k|², plus what the projection leaves.
+    /// The variance at the workspace's motion: k_xx − |G⁻¹ k|², plus the variance that the projection leaves.
     pub(crate) fn variance(&self, prior: &LagrangianPrior, workspace: &mut LagrangianWorkspace, variances: &mut [f64]) {
         let dof = self.units.len();
         assert_eq!(variances.len(), dof, "joints given and expected");

@@ -73,7 +73,7 @@ impl LagrangianPrior {
         Ok(())
     }
 
-    /// What the search varies: the logarithms of all variances, and of share / (1 − share).
+    /// The variables of the search: the logarithms of all variances, and of share / (1 − share).
     pub(crate) fn to_free(&self) -> Vec<f64> {
         let variances = [&self.kinetic, &self.potential, &self.viscous, &self.coulomb];
         let shares = [&self.kinetic_share, &self.potential_share];

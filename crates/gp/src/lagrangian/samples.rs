@@ -1,4 +1,4 @@
-//! Motions and torques of an arm: what a Lagrangian regression learns from.
+//! Motions and torques of an arm: the training data of a Lagrangian regression.
 
 use serde::{Deserialize, Serialize};
 
@@ -206,7 +206,7 @@ impl Motions {
         self.values[sample / LANES * self.joints.len() + c].map(|lanes| lanes.0[sample % LANES])
     }
 
-    /// Motions from what [`Motions::entry_values`] gives, sample after sample.
+    /// Motions from the values of [`Motions::entry_values`], sample after sample.
     pub(crate) fn of_values(joints: &[JointType], scales: &[f64], values: &[[f64; 4]]) -> Self {
         let dof = joints.len();
         let all = Self {

@@ -14,34 +14,34 @@ const FIRST: usize = 128;
 /// Relative noises that noise-free samples are compared with.
 const NOISES: [f64; 2] = [1e-4, 1e-1];
 
-/// By how much the likelihood with noise must be larger to count, nats for each sample: the search for the one without goes on
-/// with more samples, and will find out.
+/// The difference by which the likelihood with noise must be larger to count, nats for each sample. If it is smaller, the search without
+/// noise continues with more samples, which decide.
 const MARGIN: f64 = 0.1;
 
-/// Samples for each rank of the kernel matrix from which a part of them stands for all. Measured on the paper's data: the length
-/// scale of as many is off by what costs 0.3 nats at most, that of half as many by 10.
+/// The number of samples for each rank of the kernel matrix from which a part of them represents all. Measured on the paper's data: the
+/// error of the length scale of so many samples costs at most 0.3 nats, that of half as many 10.
 const PER_RANK: f64 = 2.7;
 
 /// The difference of likelihoods next to the maximum from which it is computed, nats: enough to stand out from rounding.
 const NEAR: f64 = 20.0;
 
-/// What a part that does not stand for all is searched for.
+/// The goal of the search on a part that does not represent all samples.
 const ROUGH: Goal = Goal {
     negligible: 2.0,
     near: None,
 };
 
-/// What the last part is searched for.
+/// The goal of the search on the last part.
 const FINE: Goal = Goal {
     negligible: 0.1,
     near: Some(NEAR),
 };
 
-/// How far the maximum moves from the next part to the one after, as a share of how far it moved.
+/// The expected distance that the maximum moves from the next part to the one after, as a share of its last distance.
 const SHIFT: f64 = 0.4;
 
-/// How far the likelihood of all samples may be from what the part says, nats for each sample: the quadratic form is then
-/// larger by a tenth.
+/// The largest difference between the likelihood of all samples and that of the part, nats for each sample: the quadratic form is
+/// then larger by a tenth.
 const REPRESENTED: f64 = 0.05;
 
 /// Maximises the likelihood of `training` in one length scale, with the relative noise at its `floor`; `None` if noise makes it
@@ -93,7 +93,7 @@ pub(crate) fn search(training: &TrainingSet, scale: f64, starts: usize, floor: f
     }
 }
 
-/// Whether C, at the floor of the noise, leaves more of the targets than `share` of what noise of that variance would. The
+/// Whether the residual of the targets under C, at the floor of the noise, exceeds `share` of the residual that noise of that variance has. The
 /// derivative of the likelihood by the logarithm of the noise is minus half the degrees of freedom left if it leaves nothing, and
 /// 0 if it leaves as much as the noise. `None` if C has no low rank.
 fn leaves_more_than(share: f64, factored: &Factored, samples: usize) -> Option<bool> {
@@ -104,17 +104,17 @@ fn leaves_more_than(share: f64, factored: &Factored, samples: usize) -> Option<b
     Some(low_rank.slope_by_noise() >= -0.5 * (1.0 - share) * free as f64)
 }
 
-/// The number of samples that stand for all.
+/// The number of samples that represent all.
 fn enough(rank: usize) -> usize {
     (PER_RANK * rank as f64) as usize
 }
 
-/// What the search on one part found.
+/// The result of the search on one part.
 struct Climbed {
     maximum: Maximum,
     /// The numerical rank there.
     rank: usize,
-    /// Whether the part stands for all, and has been searched to the top.
+    /// Whether the part represents all samples, and its maximum was found.
     fine: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Files of models: what is read is what was saved, and what is no model is refused.
+//! Files of models: a model is read as it was saved, and other files are refused.
 
 use super::fit::{options, pendulum};
 use super::*;

@@ -1,4 +1,4 @@
-//! Fits, posteriors and ranges: against dense formulas, against the reference implementation, and what is refused.
+//! Fits, posteriors and ranges: against dense formulas, against the reference implementation, and the refusals.
 
 use super::super::likelihood::Objective;
 use super::*;
