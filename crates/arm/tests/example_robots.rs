@@ -206,12 +206,11 @@ fn package() -> Option<PathBuf> {
 #[test]
 #[ignore = "needs the PyPI package example-robot-data 6.0.0, unpacked, with EXAMPLE_ROBOT_DATA as its folder"]
 fn all_example_robots_load_or_say_why_not() {
-    let Some(folder) = package() else {
-        eprintln!(
-            "skipped: neither {VARIABLE} nor ../shared/example-robot-data has the package example-robot-data 6.0.0"
-        );
-        return;
-    };
+    let folder = package().unwrap_or_else(|| {
+        panic!(
+            "{VARIABLE} and ../shared/example-robot-data do not exist: run tests/packages, which installs the package"
+        )
+    });
     let mut found = BTreeMap::new();
     urdfs(&folder, &mut found);
     assert_eq!(

@@ -156,10 +156,10 @@ fn mujoco_needs_the_same_torques() {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/mjcf_in_mujoco.py");
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
     let has_mujoco = Command::new(&python).args(["-c", "import mujoco, numpy"]).output();
-    if !has_mujoco.is_ok_and(|output| output.status.success()) {
-        println!("skipped: {python} has no package mujoco (pip install mujoco numpy; PYTHON names the interpreter)");
-        return;
-    }
+    assert!(
+        has_mujoco.is_ok_and(|output| output.status.success()),
+        "{python} has no package mujoco: run tests/packages, which installs it (PYTHON names the interpreter)"
+    );
     // The tensor of the Puma's link3 is physically impossible, also when scaled.
     let mut bodies: Vec<Inertia> = read(PUMA).joints().iter().map(|joint| joint.inertia).collect();
     bodies[2] = nearest_body(&bodies[2]).0;
