@@ -90,6 +90,22 @@ fn factor(ratio: Option<f64>) -> String {
     ratio.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"))
 }
 
+/// The names in words; an effect on more than two joints is one entry with their number.
+fn grouped<'a>(names: impl IntoIterator<Item = &'a Name>) -> Vec<String> {
+    let mut groups: Vec<Vec<&Name>> = Vec::new();
+    for name in names {
+        match groups.iter_mut().find(|group| group[0].0 == name.0) {
+            Some(group) => group.push(name),
+            None => groups.push(vec![name]),
+        }
+    }
+    let words = groups.into_iter().flat_map(|group| match group.as_slice() {
+        few @ ([_] | [_, _]) => few.iter().map(|of| name(of)).collect(),
+        many => vec![format!("`{}` on {} joints", many[0].0, many.len())],
+    });
+    words.collect()
+}
+
 fn row(case: &CaseTracking) -> Vec<String> {
     let injected = case.injected.iter().map(|effect| {
         let onset = effect
@@ -108,11 +124,11 @@ fn row(case: &CaseTracking) -> Vec<String> {
             words.join(", ")
         }
     };
-    let named: BTreeSet<String> = named.map(name).collect();
+    let named: BTreeSet<&Name> = named.collect();
     let mut cells = vec![
         case.case.clone(),
         or_nothing(injected.collect()),
-        or_nothing(named.into_iter().collect()),
+        or_nothing(grouped(named)),
     ];
     cells.extend(Model::ALL.map(|model| figure(case.error(model))));
     cells.push(factor(case.over_exact()));
@@ -142,11 +158,11 @@ fn why(case: &CaseTracking) -> String {
         });
     let place = place.unwrap_or_else(|| "unstable".to_owned());
     let has = |effect: &&super::InjectedEffect| case.named.contains(&(effect.effect.clone(), effect.joint.clone()));
-    let missing: Vec<String> = case
+    let missing: Vec<Name> = case
         .injected
         .iter()
         .filter(|effect| !has(effect))
-        .map(|effect| name(&(effect.effect.clone(), effect.joint.clone())))
+        .map(|effect| (effect.effect.clone(), effect.joint.clone()))
         .collect();
     let is_there = |named: &&Name| {
         BASELINE_WITH_DRIVES.contains(&named.0.as_str())
@@ -155,17 +171,37 @@ fn why(case: &CaseTracking) -> String {
                 .iter()
                 .any(|effect| (&effect.effect, &effect.joint) == (&named.0, &named.1))
     };
-    let too_many: BTreeSet<String> = case.named.iter().filter(|named| !is_there(named)).map(name).collect();
+    let too_many: BTreeSet<&Name> = case.named.iter().filter(|named| !is_there(named)).collect();
     let mut reasons = Vec::new();
     if !missing.is_empty() {
-        reasons.push(format!("not named: {}", missing.join(", ")));
+        reasons.push(format!("not named: {}", grouped(&missing).join(", ")));
     }
     if !too_many.is_empty() {
-        let all: Vec<String> = too_many.into_iter().collect();
-        reasons.push(format!("named but not injected: {}", all.join(", ")));
+        reasons.push(format!("named but not injected: {}", grouped(too_many).join(", ")));
     }
     if reasons.is_empty() {
         reasons.push("all effects are named; their parameters or forms are slightly wrong".to_owned());
     }
     format!("{} ({place}; {})", case.case, reasons.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_effect_on_many_joints_is_one_entry() {
+        let on = |effect: &str, joint: &str| (effect.to_owned(), Some(joint.to_owned()));
+        let mut names: Vec<Name> = ["a", "b", "c"].map(|joint| on("inertial_parameters", joint)).into();
+        names.extend([on("spring", "a"), on("spring", "b"), ("payload".to_owned(), None)]);
+        assert_eq!(
+            grouped(&names),
+            [
+                "`inertial_parameters` on 3 joints",
+                "`spring` on a",
+                "`spring` on b",
+                "`payload`"
+            ]
+        );
+    }
 }
