@@ -43,8 +43,8 @@ fn check(case: &str) {
     compare(case, &truth, &found);
 }
 
-/// Checks a diagnosis of `case` against the truth: what was injected is found, and nothing else; what has no name is refused one on
-/// its joint; no joint is worse for it.
+/// Checks a diagnosis of `case` against the truth: every injected effect is found, and no other; an effect outside the catalogue is
+/// refused on its joint; the error of no joint increases.
 pub fn compare(case: &str, truth: &Value, found: &Value) {
     let injected = truth["concealed"].as_array().expect("a list").iter().map(|effect| {
         let name = renamed(effect["effect"].as_str().expect("a name"));

@@ -233,7 +233,7 @@ fn a_clock_that_began_earlier_shifts_the_times_and_nothing_else() {
     }
 }
 
-/// Warming is found on a clock that ran long before, too: its amplitude is told at another time, the rest is the same.
+/// Warming is found on a clock that ran long before, too: its amplitude belongs to another time, the rest is the same.
 #[test]
 fn warming_is_found_on_a_clock_that_began_long_before() {
     let warming = |seconds: f64| -> Value {
@@ -307,7 +307,7 @@ fn an_axis_of_the_other_direction_is_the_same_joint() {
 }
 
 /// A fixed joint below the base moves nothing but where the base is; one beyond the last link moves the tool alone, at which payloads
-/// and contacts are described: what is found without them stays.
+/// and contacts are described: the findings without them remain.
 #[test]
 fn fixed_frames_change_nothing() {
     let on_a_stand = Variant {

@@ -15,7 +15,7 @@ use crate::support::Sandbox;
 mod made;
 pub use made::{ELBOW, Motion, SHOULDER, TRIO as URDF, TURN, trio};
 
-/// A recording of `seconds` at 250 Hz of the robot that is `arm` and `injected`: what is added to its torques.
+/// A recording of `seconds` at 250 Hz of the robot that is `arm` with the torques `injected`.
 pub fn recording(arm: &Arm, variant: usize, seconds: f64, injected: &dyn Fn(&Motion, &mut [f64])) -> String {
     let mut random = ChaCha8Rng::seed_from_u64(variant as u64);
     let noise = Normal::new(0.0, 0.02).expect("a spread");
@@ -46,7 +46,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Recordings of `arm` and what is `injected`, beside the URDF that its user believes.
+    /// Recordings of `arm` with the torques `injected`, beside the URDF that its user believes.
     pub fn new(arm: &Arm, injected: &dyn Fn(&Motion, &mut [f64])) -> Self {
         let sandbox = Sandbox::new();
         sandbox.write("robot.urdf", URDF);

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::diagnose_made::{Case, ELBOW, Motion, SHOULDER, URDF, arguments, trio};
 
-/// Friction that is told from drag by nothing but a wider range of speeds.
+/// Friction that only a wider range of speeds distinguishes from drag.
 fn friction(motion: &Motion, tau: &mut [f64]) {
     for (joint, level, coefficient) in [(SHOULDER, 0.8, 0.18), (ELBOW, 0.4, 0.084)] {
         let speed = motion.qd[joint];
@@ -20,8 +20,8 @@ fn the_proposed_motion_is_a_scenario_that_runs() {
     let found = case.sandbox.json("d.json");
     let next = &found["next_experiment"];
     assert_eq!(next["duration"], 25.0);
-    let told = next["separates"].as_array().expect("a list");
-    assert!(!told.is_empty(), "{next:#}");
+    let distinguished = next["separates"].as_array().expect("a list");
+    assert!(!distinguished.is_empty(), "{next:#}");
     assert!(printed.contains("- next experiment: a motion of 25 s"), "{printed}");
     let page = case.text("page.html");
     assert!(page.contains("What to do next") && page.contains("a motion of 25 s"));
@@ -34,7 +34,7 @@ fn the_proposed_motion_is_a_scenario_that_runs() {
     let header = recording.lines().next().expect("a header");
     assert!(header.contains("reference_elbow"), "{header}");
     assert_eq!(recording.lines().count(), 25_001);
-    // Not asked for, not there.
+    // Without --next, no file is written.
     assert!(case.json(&[]).get("next_experiment").is_none());
 }
 

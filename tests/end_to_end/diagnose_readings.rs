@@ -24,7 +24,7 @@ const DIAGNOSE: [&str; 8] = [
 #[test]
 fn zeros_signs_and_order_are_reported_with_the_map_that_mends_them() {
     let case = case();
-    let told = ["zero", "opposite", "swapped", "column map"];
+    let corrections = ["zero", "opposite", "swapped", "column map"];
     for (text, parts) in [
         (
             with_numbers(|row| row[1 + SHOULDER] += FRAC_PI_2),
@@ -63,7 +63,7 @@ fn zeros_signs_and_order_are_reported_with_the_map_that_mends_them() {
         let mended = case
             .sandbox
             .succeed(&["inspect", "a.csv", "--robot", "robot.urdf", "--map", "map.toml"]);
-        assert!(!told.iter().any(|word| mended.contains(word)), "{said}{mended}");
+        assert!(!corrections.iter().any(|word| mended.contains(word)), "{said}{mended}");
     }
     // Times a thirtieth of what they are.
     says(

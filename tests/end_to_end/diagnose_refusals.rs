@@ -1,4 +1,4 @@
-//! `testbed diagnose` on bad input: refused with file, place and remedy, or dealt with and told; nothing is left behind.
+//! `testbed diagnose` on bad input: refused with file, place and remedy, or corrected with a note; no file remains.
 
 use crate::diagnose_made::{Case, SHOULDER, arguments, recording, trio};
 use crate::support::{Sandbox, says};
@@ -119,7 +119,7 @@ fn another_robots_urdf_is_refused_with_what_does_not_fit() {
             "give the URDF",
         ],
     );
-    // The same names, but a range that the motion leaves, and far too little torque: told, not refused.
+    // The same names, but a range that the motion leaves, and far too little torque: a note, and no refusal.
     let urdf = case
         .text("robot.urdf")
         .replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.1\" upper=\"0.1\"");
@@ -180,7 +180,7 @@ fn no_torque_and_no_motion_are_refused_or_reported() {
     case.sandbox.write("a.csv", &no_motion);
     case.sandbox.write("b.csv", &no_motion.replace(",0.5", ",0.6"));
     says(&refused(&case, &[]), &["no joint moves", "record a motion"]);
-    // Of one joint, or in one of the recordings: told.
+    // Of one joint, or in one of the recordings: a note.
     let case = self::case();
     case.sandbox.write("a.csv", &changed(|cells| cells[6] = "0".into()));
     let output = case.sandbox.run(&arguments(&[]));

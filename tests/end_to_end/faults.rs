@@ -168,15 +168,15 @@ fn two_runs_do_not_share_a_folder() {
     std::thread::sleep(Duration::from_millis(100));
     let second = run("s.toml");
     let list: Vec<&str> = second.iter().map(String::as_str).collect();
-    let told = sandbox.refuse(&list);
+    let error = sandbox.refuse(&list);
     first.kill().expect("it can be killed");
     first.wait().expect("it ends");
-    assert!(told.contains("another testbed is writing into this folder"), "{told}");
+    assert!(error.contains("another testbed is writing into this folder"), "{error}");
     // What was killed holds nothing.
     sandbox.succeed(&list);
 }
 
-/// Ctrl-C says what is there and what is not.
+/// After Ctrl-C, the program states which files exist.
 #[test]
 fn an_interrupted_program_says_what_was_kept() {
     let sandbox = Sandbox::new();
@@ -197,14 +197,14 @@ fn an_interrupted_program_says_what_was_kept() {
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
     let run = run_of("s.toml", "run");
-    let told = interrupted(&run, &|| {
+    let error = interrupted(&run, &|| {
         while !sandbox.path("run").exists() {
             std::thread::sleep(Duration::from_millis(5));
         }
     });
     assert!(
-        told.contains("interrupted") && told.contains("nothing was written"),
-        "{told}"
+        error.contains("interrupted") && error.contains("nothing was written"),
+        "{error}"
     );
     assert!(sandbox.list("run").is_empty());
     // A recording that never ends: the writer's end opens when the program has opened the reader's.
@@ -223,9 +223,9 @@ fn an_interrupted_program_says_what_was_kept() {
         .expect("it is there");
     arguments[train + 1] = "pipe.csv".to_owned();
     let writer = std::cell::OnceCell::new();
-    let told = interrupted(&arguments, &|| {
+    let error = interrupted(&arguments, &|| {
         let _ = writer.set(std::fs::File::options().write(true).open(&pipe).expect("it opens"));
     });
-    assert!(told.contains("interrupted; nothing was written"), "{told}");
+    assert!(error.contains("interrupted; nothing was written"), "{error}");
     assert!(files(&sandbox, "").keys().eq(["s.toml"]));
 }

@@ -1,4 +1,4 @@
-//! Outputs that cannot be written, or are there already: the answer is printed, no file is half there, and what is replaced is told.
+//! Outputs that cannot be written, or are there already: the answer is printed, no file is incomplete, and the replaced files are named.
 
 use std::process::{Command, Stdio};
 
@@ -25,13 +25,13 @@ fn a_full_disk_costs_the_file_and_not_the_answer() {
     }
     let none = on_a_full_disk(&sandbox, &diagnose("none/"), 0);
     let printed = String::from_utf8_lossy(&none.stdout);
-    let told = String::from_utf8_lossy(&none.stderr);
+    let error = String::from_utf8_lossy(&none.stderr);
     assert!(
         !none.status.success() && printed.contains("Coulomb friction"),
-        "{printed}{told}"
+        "{printed}{error}"
     );
     for name in OUTPUTS {
-        assert!(told.contains(&format!("error: none/{name}")), "{name}: {told}");
+        assert!(error.contains(&format!("error: none/{name}")), "{name}: {error}");
     }
     assert!(
         sandbox.list("none").is_empty() && !printed.contains("written:"),
@@ -63,10 +63,10 @@ fn a_full_disk_costs_the_file_and_not_the_answer() {
     let printed = String::from_utf8_lossy(&run.stdout);
     assert!(!run.status.success() && printed.contains("RMS error"), "{printed}");
     assert!(sandbox.list("run").is_empty());
-    let told = String::from_utf8_lossy(&run.stderr);
+    let error = String::from_utf8_lossy(&run.stderr);
     assert!(
-        told.contains("recording.csv") && told.contains("summary.json"),
-        "{told}"
+        error.contains("recording.csv") && error.contains("summary.json"),
+        "{error}"
     );
 }
 
@@ -80,10 +80,10 @@ fn a_printed_answer_that_finds_no_room_is_an_error() {
         .stdout(full)
         .output();
     let output = output.expect("the program starts");
-    let told = String::from_utf8_lossy(&output.stderr);
+    let error = String::from_utf8_lossy(&output.stderr);
     assert!(
-        !output.status.success() && told.contains("printing the result"),
-        "{told}"
+        !output.status.success() && error.contains("printing the result"),
+        "{error}"
     );
 }
 
@@ -140,7 +140,7 @@ fn what_is_replaced_is_reported() {
     );
 }
 
-/// A folder that cannot be written to is told before the work. Root may write everywhere, and is not stopped.
+/// A folder that cannot be written to is an error before the work begins. Root may write everywhere, and is not refused.
 #[test]
 fn a_read_only_folder_is_reported_before_the_work() {
     use std::os::unix::fs::PermissionsExt;
@@ -154,9 +154,12 @@ fn a_read_only_folder_is_reported_before_the_work() {
     if is_closed {
         let arguments = diagnose("closed/");
         let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let told = sandbox.refuse(&list);
-        assert!(told.contains("closed/") && told.contains("cannot be written"), "{told}");
-        assert!(!told.contains("reading"), "{told}");
+        let error = sandbox.refuse(&list);
+        assert!(
+            error.contains("closed/") && error.contains("cannot be written"),
+            "{error}"
+        );
+        assert!(!error.contains("reading"), "{error}");
     }
     permit(0o755);
     // A folder of the system that nobody writes to stops root, too.

@@ -117,7 +117,7 @@ fn a_case_that_cannot_be_diagnosed_is_an_answer_that_is_missing() {
     let proof = sandbox.json("proof/score.json");
     assert_eq!(proof["score"]["unanswered"], json!(["case_b"]));
     assert_eq!(proof["answers"]["case_b"], Value::Null);
-    // It is told at the start, and the empty case is not clean for its silence.
+    // The report states it at the start, and the empty case does not count as one without false names.
     let page = String::from_utf8(bytes(&sandbox, "proof/report.html")).expect("text");
     assert!(page.contains("Cases without an answer: 1 (case_b)"));
     assert_eq!(target(&proof, "empty")["reached"], Value::Null);

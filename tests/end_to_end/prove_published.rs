@@ -97,7 +97,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
         .map(|said| &said["fate"])
         .collect();
     assert_eq!(fates[0], "named", "{score:#}");
-    // Nothing is on the elbow: what is said of it is a miss, or said not to show.
+    // Nothing is on the elbow: a statement about it is missed, or declared not to show.
     assert!(fates[1] == "missed" || fates[1] == "not_observable", "{score:#}");
     assert_eq!(fates[2], "named");
     let number = &score["said"][0]["numbers"][0];
@@ -139,7 +139,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
     let before = names.map(|name| bytes(&sandbox, name));
     sandbox.succeed(&[&command[..], &["--jobs", "1"]].concat());
     assert!(before == names.map(|name| bytes(&sandbox, name)), "the bytes differ");
-    // Neither a recording nor what is published may change under seal.
+    // Neither a recording nor a published value may change under seal.
     sandbox.write("published.toml", &PUBLISHED.replace("2500.0", "2600.0"));
     let refused = sandbox.refuse(&COMMAND);
     assert!(refused.contains("sealed file was changed"), "{refused}");

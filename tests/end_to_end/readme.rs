@@ -146,7 +146,7 @@ fn the_documentation_shows_task_d() {
     assert_eq!(shown[0], printed[0]);
     for (shown, printed) in shown.iter().zip(&printed).skip(1) {
         assert_eq!(shown[0], printed[0]);
-        // The torque error is rounding noise; what is tracked is not.
+        // The torque error is rounding noise; the tracking error is not.
         for cell in [1, 2] {
             let value = |cell: &str| cell.split(' ').next().and_then(|text| text.parse::<f64>().ok());
             let (a, b) = (

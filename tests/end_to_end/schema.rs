@@ -139,7 +139,7 @@ fn diagnoses_are_as_the_schema_says() {
         let mut found = case.json(further);
         assert_eq!(faults(&found), Vec::<String>::new());
         assert_eq!(found["next_experiment"].is_object(), !further.is_empty());
-        // The walk sees what is wrong.
+        // The walk finds errors.
         found["verdict"] = "no idea".into();
         found["fit"]["elbow"]["noise"] = "loud".into();
         found["robot"].take();
