@@ -10,7 +10,7 @@ use crate::regressor::Regressor;
 const PRIOR: f64 = 6.0;
 /// The evidence that an unmodelled form must bring in addition to that of its coefficients (nats). Source: first
 /// diagnosis.
-const UNNAMED_PRIOR: f64 = 9.0;
+const UNMODELLED_PRIOR: f64 = 9.0;
 
 /// The scope of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -363,8 +363,8 @@ impl Spec {
     };
 
     /// [`Self::EMPTY`] for an unmodelled form.
-    pub const UNNAMED: Self = Self {
-        prior: UNNAMED_PRIOR,
+    pub const UNMODELLED: Self = Self {
+        prior: UNMODELLED_PRIOR,
         ..Self::EMPTY
     };
 

@@ -6,9 +6,9 @@ mod clouds;
 mod errors;
 mod figures;
 mod findings;
+mod last_sections;
 mod overview;
 mod place;
-mod rest;
 mod table;
 mod zoom;
 

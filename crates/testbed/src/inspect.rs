@@ -18,15 +18,15 @@ use crate::written::Written;
 
 /// What `--json` holds.
 #[derive(Serialize)]
-struct Report<'a> {
+struct Inspection<'a> {
     schema: &'static str,
     robot: Option<&'a str>,
-    files: Vec<FileReport<'a>>,
+    files: Vec<FileInspection<'a>>,
 }
 
 /// One recording.
 #[derive(Serialize)]
-struct FileReport<'a> {
+struct FileInspection<'a> {
     file: &'a Path,
     #[serde(flatten)]
     quality: Quality,
@@ -62,28 +62,28 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
     let arm = robot.map(|robot| load_arm(args, &robot, map.as_ref())).transpose()?;
     let mut files = Vec::new();
     for file in &args.files {
-        let report = match inspect(file, map.as_ref(), arm.as_ref()) {
-            Ok(report) => report,
+        let inspection = match inspect(file, map.as_ref(), arm.as_ref()) {
+            Ok(inspection) => inspection,
             Err(error) => {
                 eprintln!("error: {error:#}");
                 continue;
             }
         };
-        output::print_beside(args.json.as_deref(), &shown(&report))?;
-        files.push(report);
+        output::print_beside(args.json.as_deref(), &shown(&inspection))?;
+        files.push(inspection);
     }
     if files.len() < args.files.len() {
         let unread = args.files.len() - files.len();
         bail!("{unread} of {} recordings cannot be used", args.files.len());
     }
     if let Some(path) = &args.json {
-        let report = Report {
+        let inspection = Inspection {
             schema: "testbed.inspect/1",
             robot: arm.as_ref().map(Arm::name),
             files,
         };
         let mut written = Written::default();
-        written.add(path, || output::write_json(path, &report));
+        written.add(path, || output::write_json(path, &inspection));
         output::print_beside(Some(path), &written.lines())?;
         written.finish()?;
     }
@@ -106,7 +106,7 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
     Ok(arm)
 }
 
-fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileReport<'a>> {
+fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> anyhow::Result<FileInspection<'a>> {
     let mut recording = named::read(file, map, arm)?;
     let moved = arm.map_or(Vec::new(), |arm| turns::into_limits(&mut recording, arm));
     let (regular, found) = recording.regular().with_context(|| file.display().to_string())?;
@@ -134,7 +134,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         }
     }
     let warnings = recording.warnings.iter().cloned().chain(found);
-    Ok(FileReport {
+    Ok(FileInspection {
         file,
         quality,
         against_robot,
@@ -148,9 +148,9 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     })
 }
 
-fn shown(report: &FileReport<'_>) -> String {
+fn shown(inspection: &FileInspection<'_>) -> String {
     let mut text = String::new();
-    let quality = &report.quality;
+    let quality = &inspection.quality;
     let clock = if !quality.has_clock {
         "no regular clock".into()
     } else if quality.jitter_rms < 1e-3 / quality.rate {
@@ -164,7 +164,7 @@ fn shown(report: &FileReport<'_>) -> String {
     let _ = writeln!(
         text,
         "{}: {} joints, {} rows, {:.2} s at {} Hz, {clock}",
-        report.file.display(),
+        inspection.file.display(),
         quality.joints.len(),
         quality.rows,
         quality.duration,
@@ -199,7 +199,7 @@ fn shown(report: &FileReport<'_>) -> String {
         ]);
     }
     let _ = writeln!(text, "{}", report::terminal::fitted(table));
-    let (shown, gaps) = shortened(report.warnings.iter(), |shown| &shown.warning);
+    let (shown, gaps) = shortened(inspection.warnings.iter(), |shown| &shown.warning);
     for shown in shown {
         let _ = writeln!(text, "- {}", shown.text);
     }
@@ -209,13 +209,13 @@ fn shown(report: &FileReport<'_>) -> String {
     for finding in &quality.findings {
         let _ = writeln!(text, "- {}{}", about(finding.joint.as_deref()), finding.text);
     }
-    for misfit in &report.against_robot {
+    for misfit in &inspection.against_robot {
         let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
     }
-    if let Some(map) = &report.column_map {
+    if let Some(map) = &inspection.column_map {
         let _ = write!(text, "- a column map that corrects it (--map):\n{map}");
     }
-    if report.warnings.is_empty() && quality.findings.is_empty() && report.against_robot.is_empty() {
+    if inspection.warnings.is_empty() && quality.findings.is_empty() && inspection.against_robot.is_empty() {
         let _ = writeln!(text, "- no remarks");
     }
     let _ = writeln!(text);

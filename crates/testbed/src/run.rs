@@ -2,7 +2,7 @@
 
 mod fitted;
 mod folder;
-mod left;
+mod hardly_learned;
 mod observers;
 
 use std::path::{Path, PathBuf};
@@ -152,7 +152,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
     if kind.learns() {
         let length_scales = kind.has_length_scales().then_some(length_scales);
-        text += &left::hardly_learned(&scenario, &summary.torque_mse, length_scales)?;
+        text += &hardly_learned::remarks(&scenario, &summary.torque_mse, length_scales)?;
         text += &approximated(model.regressions());
     }
     text += &written.lines();

@@ -34,7 +34,7 @@ const NEWER_ROWS: [ModelKind; 2] = [ModelKind::LagrangianOnly, ModelKind::Lagran
 
 /// The results of the command.
 #[derive(Serialize)]
-struct Report {
+struct Tables {
     tables: Vec<Table>,
     tracking: Vec<Tracking>,
 }
@@ -161,11 +161,11 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
     let tracking = tracked.par_iter().map(track).collect::<anyhow::Result<_>>()?;
     progress.finish();
 
-    let report = Report { tables, tracking };
+    let results = Tables { tables, tracking };
     if let Some(path) = json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &results)?;
     }
-    output::print_beside(json, &text(&report))?;
+    output::print_beside(json, &text(&results))?;
     eprintln!("done in {:.1} s", started.elapsed().as_secs_f64());
     Ok(())
 }
@@ -175,7 +175,7 @@ fn short(task: &str) -> String {
 }
 
 /// The tables as text for the terminal.
-fn text(report: &Report) -> String {
+fn text(results: &Tables) -> String {
     let header = |first: &str, last: &str| {
         let joints = (1..=6).map(|joint| format!("joint {joint}"));
         let cells: Vec<String> = [first.to_owned()]
@@ -189,7 +189,7 @@ fn text(report: &Report) -> String {
         values.iter().chain([&last]).map(|value| rounded(*value, 3)).collect()
     };
     let mut text = String::new();
-    for (table, number) in report.tables.iter().zip(["I", "II"]) {
+    for (table, number) in results.tables.iter().zip(["I", "II"]) {
         text += &format!(
             "Table {number}: mean squared torque error on task {} after training on {}, (N m)²\n",
             table.test,
@@ -210,7 +210,7 @@ fn text(report: &Report) -> String {
     }
     text += "Figure 4: RMS tracking error on task D in the closed loop after A, B, C, mrad\n";
     let mut printed = header("model", "1 to 3");
-    for row in &report.tracking {
+    for row in &results.tracking {
         let errors: Vec<f64> = row.rms_error_rad.iter().map(|rad| rad * 1e3).collect();
         let mut cells = vec![row.model.title().to_owned()];
         cells.extend(numbers(&errors, errors[..3].iter().sum::<f64>() / 3.0));

@@ -32,7 +32,7 @@ const NOTABLE: f64 = 0.01;
 
 /// The results of the command.
 #[derive(Serialize)]
-pub struct Report {
+pub struct Transfer {
     schema: &'static str,
     model: ModelKind,
     joints: Vec<String>,
@@ -106,15 +106,15 @@ pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
         args.model.flag()
     );
     let progress = Progress::new("training on every set of tasks");
-    let report = compare(args, &progress)?;
+    let transfer = compare(args, &progress)?;
     progress.finish();
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &transfer)?;
     }
-    output::print_beside(args.json.as_deref(), &words::text(&report))
+    output::print_beside(args.json.as_deref(), &words::text(&transfer))
 }
 
-fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Report> {
+fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer> {
     let scenario = Scenario::load(&args.test)?;
     let chain = ChainArgs::default();
     let mut tasks = args.train.clone();
@@ -171,7 +171,7 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Report> {
             })
             .collect()
     };
-    Ok(Report {
+    Ok(Transfer {
         schema: "testbed.transfer/1",
         model: args.model,
         harm: harm(&rows, &joints),

@@ -13,7 +13,7 @@ use crate::selection::FinalFit;
 use crate::selection::gain::held_out_gain;
 use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
-use crate::selection::rivals::{Named, Standing, standing};
+use crate::selection::rivals::{Rival, Standing, standing};
 use crate::thresholds::LISTED_SHARE;
 
 /// The findings, each with its candidate.
@@ -45,7 +45,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         .collect();
     let place = place(last, candidate);
     let gain = held_out_gain(problem, last.held.as_ref(), &last.judged, member);
-    let confusable = |&(hypothesis, joint): &Named| Confusable {
+    let confusable = |&(hypothesis, joint): &Rival| Confusable {
         effect: hypothesis.name().unwrap_or_default(),
         joint: joint.map(joint_name),
     };
@@ -107,7 +107,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
 
 /// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
 /// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
-fn as_last_link(last: &FinalFit, candidate: usize) -> Option<Named> {
+fn as_last_link(last: &FinalFit, candidate: usize) -> Option<Rival> {
     let study = &last.study;
     let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
     let links = Hypothesis::of(&InertialParameters);

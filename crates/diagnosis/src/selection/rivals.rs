@@ -11,22 +11,22 @@ use crate::search::study::Study;
 use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, PAIRED_RIVALS, PARTNERS, SUREST, TRIED_RIVALS};
 
 /// An effect and its joint; `None` is the whole arm.
-pub type Named = (Hypothesis, Option<usize>);
+pub type Rival = (Hypothesis, Option<usize>);
 
 /// The comparison of a finding with its alternatives.
 #[derive(Clone, Debug)]
 pub struct Standing {
     /// Effects that explain nearly as much, the best first.
-    pub rivals: Vec<Named>,
+    pub rivals: Vec<Rival>,
     /// Two effects that explain nearly as much together, and neither alone, the best first.
-    pub pairs: Vec<[Named; 2]>,
+    pub pairs: Vec<[Rival; 2]>,
     /// The evidence for the finding against its best alternative (nats).
     pub margin: f64,
     /// The margin without the alternative of one effect on each joint, which is less likely than one effect on the whole arm.
     pub margin_over_single: f64,
     /// The inertial parameters of a link, or of all (`None`), if a stronger background without the finding is as likely by its
     /// score, although it explains less. The probability of the name is then one half.
-    pub as_likely: Option<Named>,
+    pub as_likely: Option<Rival>,
 }
 
 impl Standing {
@@ -71,7 +71,7 @@ pub fn beside(study: &Study, selected: &Selection, member: usize) -> Vec<usize> 
 
 /// The equivalent name of `member`, if there is one: a constant torque beside larger dry friction equals friction that depends on
 /// the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
-pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) -> Option<Named> {
+pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) -> Option<Rival> {
     let finding = &study.candidates[member];
     if finding.hypothesis.is(&FrictionAsymmetry) {
         return Some((Hypothesis::of(&TorqueOffset), finding.joint));
@@ -188,7 +188,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     let (single, of_all_joints) = (best(&results), best(&on_all_joints));
     results.extend(on_all_joints);
     results.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
-    let mut rivals: Vec<Named> = results
+    let mut rivals: Vec<Rival> = results
         .iter()
         .filter(|(loss, ..)| *loss <= allowance)
         .map(|&(_, _, hypothesis, joint)| (hypothesis, joint))
@@ -260,16 +260,16 @@ struct Paired<'a> {
     /// The largest loss of an alternative (nats).
     allowance: f64,
     /// The effects that are alternatives alone.
-    rivals: &'a [Named],
+    rivals: &'a [Rival],
 }
 
 impl Paired<'_> {
     /// Each pair with its loss and its score beyond those of the finding (nats). One effect of a pair is among those fitted
     /// `alone` that are nearest to an alternative, the other among `others`.
-    fn pairs(&self, mut alone: Vec<(usize, Selection)>, others: &[usize]) -> Vec<(f64, f64, [Named; 2])> {
+    fn pairs(&self, mut alone: Vec<(usize, Selection)>, others: &[usize]) -> Vec<(f64, f64, [Rival; 2])> {
         alone.retain(|(c, _)| !self.rivals.contains(&self.named(*c)));
         alone.sort_by(|a, b| a.1.fit.loss.total_cmp(&b.1.fit.loss).then(a.0.cmp(&b.0)));
-        let mut pairs: Vec<(f64, f64, [Named; 2])> = Vec::new();
+        let mut pairs: Vec<(f64, f64, [Rival; 2])> = Vec::new();
         for (one, next) in alone.into_iter().take(PAIRED_RIVALS) {
             let is_partner = |c: &usize| {
                 let named = self.named(*c);
@@ -310,7 +310,7 @@ impl Paired<'_> {
         pairs
     }
 
-    fn named(&self, c: usize) -> Named {
+    fn named(&self, c: usize) -> Rival {
         (self.study.candidates[c].hypothesis, self.study.candidates[c].joint)
     }
 }

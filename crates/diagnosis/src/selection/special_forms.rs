@@ -6,23 +6,23 @@ use rayon::prelude::*;
 use crate::regression::strengths::Strengths;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
-use crate::selection::rivals::Named;
+use crate::selection::rivals::Rival;
 use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, SPECIAL_FORMS_TRIED};
 
 /// The special forms that the recordings do not exclude, the best first: those that are as likely beside a smaller correction of
 /// the links, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
-pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Named> {
+pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
     let links = |strengths: &Strengths| strengths.links.clone();
     let is_smaller =
         |strengths: &Strengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
     let smaller: Vec<Strengths> = study.strengths.weaker().into_iter().filter(is_smaller).collect();
-    let mut scores: Vec<(f64, Named)> = smaller
+    let mut scores: Vec<(f64, Rival)> = smaller
         .into_par_iter()
         .flat_map_iter(|strengths| beside(study, selected, &strengths))
         .filter(|(score, _)| *score < selected.score + NEARLY_AS_LIKELY)
         .collect();
     scores.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut forms: Vec<Named> = Vec::new();
+    let mut forms: Vec<Rival> = Vec::new();
     for form in study
         .given_up
         .iter()
@@ -39,7 +39,7 @@ pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Named> {
 }
 
 /// The most promising special forms beside links of these `strengths`, each with its score (nats).
-fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Named)> {
+fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Rival)> {
     let products = study.products_at(strengths);
     let problem = study.problem(&products);
     let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));

@@ -9,7 +9,7 @@ pub struct History;
 static SPEC: Spec = Spec {
     name: "history",
     depends_on: Some(Regressor::History),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 /// The shortest time constant that is not attributed to friction (s). Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.

@@ -9,7 +9,7 @@ pub struct OtherPosition;
 static SPEC: Spec = Spec {
     name: "other_position",
     depends_on: Some(Regressor::OtherJoint),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 impl EffectKind for OtherPosition {

@@ -9,7 +9,7 @@ pub struct OtherSpeed;
 static SPEC: Spec = Spec {
     name: "other_speed",
     depends_on: Some(Regressor::OtherJoint),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 /// |v|, v², v |v| and v³, v being another joint's velocity over its largest.

@@ -9,7 +9,7 @@ pub struct OwnPosition;
 static SPEC: Spec = Spec {
     name: "own_position",
     depends_on: Some(Regressor::OwnPosition),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 impl EffectKind for OwnPosition {

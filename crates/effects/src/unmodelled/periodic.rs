@@ -12,7 +12,7 @@ static SPEC: Spec = Spec {
     may_be_in_one_recording: true,
     is_suggested: true,
     depends_on: Some(Regressor::Time),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 /// sin (form 0) or cos (form 1) of ω t; the size is ω (rad/s).

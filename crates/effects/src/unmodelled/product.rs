@@ -10,7 +10,7 @@ pub struct Product;
 static SPEC: Spec = Spec {
     name: "product",
     depends_on: Some(Regressor::OwnPositionTimesSpeed),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 /// q q̇, q sgn q̇, q² sgn q̇ and q² q̇, q being the position over its range.

@@ -11,7 +11,7 @@ static SPEC: Spec = Spec {
     name: "time",
     may_be_in_one_recording: true,
     depends_on: Some(Regressor::Time),
-    ..Spec::UNNAMED
+    ..Spec::UNMODELLED
 };
 
 /// A tent function of time; sizes are its centre and half its width (s).

@@ -1,4 +1,4 @@
-//! The end of the page: effects that are not testable, the next experiment, all parameters in SI units, provenance.
+//! The last sections of the page: effects that are not testable, the next experiment, all parameters in SI units, provenance.
 
 use std::collections::BTreeMap;
 

@@ -17,7 +17,7 @@ const LARGER: f64 = 1.005;
 ///
 /// # Errors
 /// If the reference cannot be sampled.
-pub(super) fn hardly_learned(
+pub(super) fn remarks(
     scenario: &Scenario,
     errors: &[f64],
     length_scales: Option<LengthScalesArg>,
@@ -32,7 +32,7 @@ pub(super) fn hardly_learned(
     Ok(sentences(&remaining, length_scales))
 }
 
-/// The sentences of [`hardly_learned`] on joints, each with its RMS torque error over that of the rigid body.
+/// The sentences of [`remarks`] on joints, each with its RMS torque error over that of the rigid body.
 fn sentences(remaining: &[(&str, f64)], length_scales: Option<LengthScalesArg>) -> String {
     let (hardly, larger): (Vec<_>, Vec<_>) = remaining
         .iter()

@@ -2,16 +2,16 @@
 
 use report::numbers::rounded;
 
-use super::{Harm, Report, Row, short};
+use super::{Harm, Row, Transfer, short};
 use crate::tables::mean;
 
 /// The report.
-pub fn text(report: &Report) -> String {
-    let joints = report.joints.iter().cloned();
+pub fn text(transfer: &Transfer) -> String {
+    let joints = transfer.joints.iter().cloned();
     let mut text = format!(
         "{}: RMS torque error on a task that the model was not trained on, relative to that of the rigid body alone (1: \
          nothing learned)\n",
-        report.model.title()
+        transfer.model.title()
     );
     let header = ["train", "test"].map(str::to_owned).into_iter();
     let header =
@@ -19,7 +19,7 @@ pub fn text(report: &Report) -> String {
             .chain(joints.clone())
             .chain(["mean".to_owned(), "predicted".to_owned(), "likelihood".to_owned()]);
     let mut table = report::terminal::table(header);
-    for row in &report.rows {
+    for row in &transfer.rows {
         let mut cells = vec![names(&row.train), short(&row.test)];
         let parts = parts(row, &row.error);
         cells.extend(parts.iter().map(|part| rounded(*part, 2)));
@@ -40,8 +40,8 @@ pub fn text(report: &Report) -> String {
             .chain(["mean".to_owned()]),
     );
     for (name, values) in [
-        ("predicted error", &report.correlation.predicted),
-        ("likelihood", &report.correlation.likelihood),
+        ("predicted error", &transfer.correlation.predicted),
+        ("likelihood", &transfer.correlation.likelihood),
     ] {
         let mut cells = vec![name.to_owned()];
         cells.extend(values.iter().map(|value| rounded(*value, 2)));
@@ -49,7 +49,7 @@ pub fn text(report: &Report) -> String {
         table.add_row(cells);
     }
     text += &format!("{table}\n\n");
-    text + &harm(report)
+    text + &harm(transfer)
 }
 
 /// The errors of `row` in units of the rigid body's.
@@ -66,12 +66,12 @@ fn names(tasks: &[String]) -> String {
 }
 
 /// A line for each task that makes an error larger.
-fn harm(report: &Report) -> String {
-    if report.harm.is_empty() {
+fn harm(transfer: &Transfer) -> String {
+    if transfer.harm.is_empty() {
         return "No task makes the error of a joint on another task larger by 5 %.\n".into();
     }
     let mut text = String::from("Data that harm (the error of a joint rises by more than 5 %):\n");
-    let mut rest = report.harm.as_slice();
+    let mut rest = transfer.harm.as_slice();
     while let Some(first) = rest.first() {
         let same =
             |other: &&Harm| (&other.train, &other.added, &other.test) == (&first.train, &first.added, &first.test);
@@ -92,11 +92,11 @@ fn harm(report: &Report) -> String {
             joints.join(", ")
         );
     }
-    let count = |said: fn(&Harm) -> bool| report.harm.iter().filter(|harm| said(harm)).count();
+    let count = |said: fn(&Harm) -> bool| transfer.harm.iter().filter(|harm| said(harm)).count();
     text += &format!(
         "The likelihood of the task left out fell in {} of these {} cases, and the predicted error rose in {}.\n",
         count(|harm| harm.likelihood_fell),
-        report.harm.len(),
+        transfer.harm.len(),
         count(|harm| harm.predicted_rose)
     );
     text
