@@ -37,4 +37,10 @@ pub enum ArmError {
         /// How to correct it.
         remedy: String,
     },
+    /// An `<inertial>` element alone, without its URDF.
+    #[error("the <inertial> cannot be read: {reason}")]
+    Inertial {
+        /// The parser's reason, or the attribute that is not a number.
+        reason: String,
+    },
 }

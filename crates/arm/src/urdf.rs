@@ -3,6 +3,7 @@
 mod checks;
 mod choose;
 mod fixed;
+mod inertial;
 mod syntax;
 
 use std::path::Path;

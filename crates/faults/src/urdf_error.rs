@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use arm::{Inertia, Matrix3, Pose, Vector3};
+use arm::Inertia;
 use nalgebra::{Matrix4, Vector4};
 use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
+use quick_xml::events::Event;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -75,22 +75,12 @@ pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, 
     ))
 }
 
-/// An inertial being read.
-struct Open {
-    begun: usize,
-    xyz: [f64; 3],
-    rpy: [f64; 3],
-    mass: f64,
-    /// ixx, ixy, ixz, iyy, iyz, izz (kg m²).
-    tensor: [f64; 6],
-}
-
 /// The places of the links' inertials in the text, each with its body in the link's frame.
 fn inertials(urdf: &str) -> Result<Vec<(Range<usize>, Inertia)>, FaultError> {
     let mut reader = Reader::from_str(urdf);
     let mut found = Vec::new();
     let (mut depth, mut in_link) = (0, false);
-    let mut open: Option<Open> = None;
+    let mut begun: Option<usize> = None;
     loop {
         let from = reader.buffer_position() as usize;
         match reader.read_event().map_err(unreadable)? {
@@ -98,14 +88,16 @@ fn inertials(urdf: &str) -> Result<Vec<(Range<usize>, Inertia)>, FaultError> {
                 depth += 1;
                 match depth {
                     2 => in_link = tag.name().as_ref() == b"link",
-                    3 if in_link && tag.name().as_ref() == b"inertial" => open = Some(Open::at(from)),
-                    _ => open.as_mut().map_or(Ok(()), |open| open.read(&tag))?,
+                    3 if in_link && tag.name().as_ref() == b"inertial" => begun = Some(from),
+                    _ => {}
                 }
             }
-            Event::Empty(tag) => open.as_mut().map_or(Ok(()), |open| open.read(&tag))?,
             Event::End(_) => {
-                if let Some(open) = open.take_if(|_| depth == 3) {
-                    found.push((open.begun..reader.buffer_position() as usize, open.body()));
+                if let Some(begun) = begun.take_if(|_| depth == 3) {
+                    let place = begun..reader.buffer_position() as usize;
+                    let body = Inertia::from_urdf(&urdf[place.clone()])
+                        .map_err(|error| FaultError::Setting(error.to_string()))?;
+                    found.push((place, body));
                 }
                 depth -= 1;
             }
@@ -119,61 +111,9 @@ fn unreadable(reason: impl std::fmt::Display) -> FaultError {
     FaultError::Setting(format!("the URDF's inertials cannot be read: {reason}"))
 }
 
-impl Open {
-    fn at(begun: usize) -> Self {
-        Self {
-            begun,
-            xyz: [0.0; 3],
-            rpy: [0.0; 3],
-            mass: 0.0,
-            tensor: [0.0; 6],
-        }
-    }
-
-    fn read(&mut self, tag: &BytesStart<'_>) -> Result<(), FaultError> {
-        let text = |name: &str| -> Result<String, FaultError> {
-            let found = tag.try_get_attribute(name).map_err(unreadable)?;
-            let value = found.map(|attribute| attribute.unescape_value().map(std::borrow::Cow::into_owned));
-            Ok(value.transpose().map_err(unreadable)?.unwrap_or_default())
-        };
-        let fill = |text: &str, target: &mut [f64]| -> Result<(), FaultError> {
-            for (target, word) in target.iter_mut().zip(text.split_whitespace()) {
-                *target = word
-                    .parse()
-                    .map_err(|_| unreadable(format!("\"{word}\" is not a number")))?;
-            }
-            Ok(())
-        };
-        match tag.name().as_ref() {
-            b"origin" => {
-                fill(&text("xyz")?, &mut self.xyz)?;
-                fill(&text("rpy")?, &mut self.rpy)
-            }
-            b"mass" => fill(&text("value")?, std::slice::from_mut(&mut self.mass)),
-            b"inertia" => {
-                for (name, target) in ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].iter().zip(&mut self.tensor) {
-                    fill(&text(name)?, std::slice::from_mut(target))?;
-                }
-                Ok(())
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn body(&self) -> Inertia {
-        let [xx, xy, xz, yy, yz, zz] = self.tensor;
-        let centred = Inertia {
-            mass: self.mass,
-            com: Vector3::zeros(),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-        };
-        centred.transformed(&Pose::from_xyz_rpy(self.xyz, self.rpy))
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use arm::Arm;
+    use arm::{Arm, Matrix3, Vector3};
     use rand::SeedableRng;
 
     use super::*;

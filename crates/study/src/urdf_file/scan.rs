@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use anyhow::{Context, ensure};
-use arm::{Inertia, Matrix3, Pose, Vector3};
+use arm::Inertia;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -106,53 +106,8 @@ struct Open {
     found: Option<Range<usize>>,
     /// The beginning of its inertial or dynamics, while inside it.
     begun: Option<usize>,
-    inertial: RawInertial,
     /// Whether its dynamics were written by a diagnosis.
     is_diagnosed: bool,
-}
-
-#[derive(Default)]
-struct RawInertial {
-    xyz: [f64; 3],
-    rpy: [f64; 3],
-    mass: f64,
-    /// ixx ixy ixz iyy iyz izz.
-    tensor: [f64; 6],
-}
-
-impl RawInertial {
-    fn read(&mut self, tag: &BytesStart<'_>) -> anyhow::Result<()> {
-        match tag.name().as_ref() {
-            b"origin" => {
-                for (name, target) in [("xyz", &mut self.xyz), ("rpy", &mut self.rpy)] {
-                    let text = attribute(tag, name)?.unwrap_or_default();
-                    for (target, word) in target.iter_mut().zip(text.split_whitespace()) {
-                        *target = number(word)?;
-                    }
-                }
-            }
-            b"mass" => self.mass = number(&attribute(tag, "value")?.unwrap_or_default())?,
-            b"inertia" => {
-                for (name, target) in ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].iter().zip(&mut self.tensor) {
-                    if let Some(text) = attribute(tag, name)? {
-                        *target = number(&text)?;
-                    }
-                }
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-
-    fn inertia(&self) -> Inertia {
-        let [xx, xy, xz, yy, yz, zz] = self.tensor;
-        let centred = Inertia {
-            mass: self.mass,
-            com: Vector3::zeros(),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-        };
-        centred.transformed(&Pose::from_xyz_rpy(self.xyz, self.rpy))
-    }
 }
 
 fn number(text: &str) -> anyhow::Result<f64> {
@@ -207,7 +162,7 @@ impl Places {
                         .trim_end();
                     if let Some(mut empty) = opened(&tag)? {
                         let place = Place::Within(here, tag_text.to_owned());
-                        places.close(&mut empty, place);
+                        places.close(text, &mut empty, place)?;
                     }
                 }
                 Event::Empty(tag) => {
@@ -231,7 +186,7 @@ impl Places {
                         && let Some(mut closed) = open.take()
                     {
                         let place = closed.found.take().map_or(Place::Before(here.start), Place::At);
-                        places.close(&mut closed, place);
+                        places.close(text, &mut closed, place)?;
                     }
                     depth -= 1;
                 }
@@ -243,10 +198,14 @@ impl Places {
         Ok(places)
     }
 
-    fn close(&mut self, element: &mut Open, place: Place) {
+    /// The end of a link or joint of `text`.
+    fn close(&mut self, text: &str, element: &mut Open, place: Place) -> anyhow::Result<()> {
         let name = std::mem::take(&mut element.name);
         if element.is_link {
-            let inertia = element.inertial.inertia();
+            let inertia = match &place {
+                Place::At(range) => Inertia::from_urdf(&text[range.clone()])?,
+                Place::Before(_) | Place::Within(..) => Inertia::zero(),
+            };
             self.links.insert(
                 name,
                 LinkPlaces {
@@ -264,6 +223,7 @@ impl Places {
                 },
             );
         }
+        Ok(())
     }
 }
 
@@ -278,7 +238,6 @@ fn opened(tag: &BytesStart<'_>) -> anyhow::Result<Option<Open>> {
         name: attribute(tag, "name")?.unwrap_or_default(),
         found: None,
         begun: None,
-        inertial: RawInertial::default(),
         is_diagnosed: false,
     }))
 }
@@ -291,8 +250,6 @@ fn begin(open: &mut Option<Open>, depth: usize, tag: &BytesStart<'_>, here: Rang
         open.begun = Some(here.start);
         let (key, value) = SOURCE;
         open.is_diagnosed = !open.is_link && attribute(tag, key)?.is_some_and(|found| found == value);
-    } else if depth == 4 && open.is_link && open.begun.is_some() {
-        open.inertial.read(tag)?;
     }
     Ok(())
 }
