@@ -318,6 +318,13 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// Whether it is friction of another form than a drive's dry and viscous friction, which hides or imitates it where that differs
+    /// from recording to recording.
+    pub fn is_form_of_friction(&self) -> bool {
+        let acts_against_motion = matches!(self.against, Against::Speed | Against::LoadAlong | Against::TimeAlong);
+        acts_against_motion && !self.is_friction
+    }
+
     /// An effect of one joint without texts, parameters and relations: the defaults for the other fields of a spec.
     pub const EMPTY: Self = Self {
         name: "",

@@ -149,12 +149,13 @@ impl Problem<'_> {
                 .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
     }
 
-    /// The residual sums of squares of `fit` on the recordings of `held`. Their friction may differ from the fit's, as much as the
-    /// background lets that of a training recording differ.
-    pub fn held_out_rss(&self, held: &Products, fit: &Fit) -> Vec<f64> {
+    /// The residual sums of squares of `fit` on the recordings of `held`, which decide on `candidate`. For a form of friction, dry and
+    /// viscous friction of these recordings may differ from the fit's, as much as the background lets those of a training recording
+    /// differ.
+    pub fn held_out_rss(&self, held: &Products, candidate: usize, fit: &Fit) -> Vec<f64> {
         let rss = held.rss(self.table, &fit.columns, &fit.coefficients);
         let scale = FRICTION_PRIOR * self.products.friction_strength();
-        if scale == 0.0 {
+        if scale == 0.0 || !self.candidates[candidate].hypothesis.spec().is_form_of_friction() {
             return rss;
         }
         let scales = &self.data.scales;

@@ -47,7 +47,7 @@ pub fn held_out_gain(problem: &Problem<'_>, held: Option<&Products>, judged: &Ju
         return Some(gain_in_pieces(problem, fit, &without.fit, member.candidate, joint));
     }
     let fit = &judged.named.fit;
-    let [with, without] = [fit, &without.fit].map(|fit| problem.held_out_rss(held, fit));
+    let [with, without] = [fit, &without.fit].map(|fit| problem.held_out_rss(held, member.candidate, fit));
     let gain = |without: &[f64]| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt();
     let mut gains = vec![gain(&without)];
     // Every drive has friction, and most have a rotor: they also count as useful if the fit without refitting predicts

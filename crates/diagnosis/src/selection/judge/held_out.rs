@@ -42,7 +42,7 @@ pub fn predicting(problem: &Problem<'_>, held: &Products, mut selected: Selectio
 /// a joint's worse than the nominal model's; with the rule that removes it.
 pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> Option<(&'static str, usize)> {
     let table = problem.table;
-    let rss = |selected: &Selection| problem.held_out_rss(held, &selected.fit);
+    let rss = |selected: &Selection| held.rss(table, &selected.fit.columns, &selected.fit.coefficients);
     let with = rss(selected);
     // The increase of the held-out loss without each.
     let gains: Vec<(usize, f64, Vec<f64>)> = (0..selected.set.len())
@@ -51,7 +51,7 @@ pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> 
             let mut set = selected.set.clone();
             let removed = set.remove(k);
             let rest = problem.choose(set, &selected.fit.weights);
-            let without = rss(&rest);
+            let [with, without] = [&selected.fit, &rest.fit].map(|fit| problem.held_out_rss(held, removed, fit));
             // An effect passes if it improves the prediction of all joints together, or of the joints on which it acts. On the other
             // joints, only the background changes.
             let this = &problem.candidates[removed];
@@ -64,7 +64,7 @@ pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> 
             if problem.is_background_too(this) || this.hypothesis.spec().is_friction {
                 gain += rest.score - selected.score;
             }
-            (removed, gain, without)
+            (removed, gain, rss(&rest))
         })
         .collect();
     let exempt = |candidate: usize| {
