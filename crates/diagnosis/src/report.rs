@@ -59,7 +59,8 @@ pub struct Report {
     pub not_enough_data: Vec<String>,
     /// Where the nominal model differs from the recordings, joint by joint.
     pub located: Vec<Located>,
-    /// How well each joint's torque is predicted. Joints whose channel holds no torque are not in it.
+    /// How well each joint's torque is predicted. Joints whose channel holds no torque, or none in the held-out
+    /// recordings, are not in it.
     pub fit: BTreeMap<String, JointFit>,
     /// What changed since the recordings from before, in sentences, if there are such recordings.
     #[serde(skip_serializing_if = "Option::is_none")]

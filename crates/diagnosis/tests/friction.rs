@@ -27,7 +27,6 @@ fn friction_that_grows_gradually_is_not_stribeck_friction() {
 }
 
 /// Friction of the held-out recording that is larger than that of the others, which differ from each other, too, does not refute drag.
-/// The held-out motion is slow, so that the drag hardly shows in it.
 #[test]
 fn more_friction_in_the_held_out_recording_does_not_refute_drag() {
     let injected = |motion: &mut Motion, tau: &mut [f64]| {

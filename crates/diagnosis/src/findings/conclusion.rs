@@ -166,11 +166,17 @@ impl Conclusion {
     /// The diagnosis of `arm`, without a next experiment.
     pub fn diagnosis(self, arm: &Arm, last: FinalFit) -> Diagnosis {
         let effects = self.effects().collect();
-        let motions = last.study.data.motions;
-        // A channel that holds no torque has no relative error.
+        let data = last.study.data;
+        let motions = data.motions;
+        // A channel that holds no torque, or none in the held-out recordings, has no relative error.
         let has_held_out = motions.sources.iter().any(|source| source.held_out);
         let mut fit = self.fit;
-        fit.retain(|_, fit| !has_held_out || fit.held_out_nrmse_nominal.is_some());
+        for (joint, torque) in arm.joints().iter().zip(&data.scales.torque) {
+            let is_tested = |fit: &JointFit| !has_held_out || fit.held_out_nrmse_nominal.is_some();
+            if *torque == 0.0 || !fit.get(&joint.name).is_some_and(is_tested) {
+                fit.remove(&joint.name);
+            }
+        }
         let names = |held_out: bool| {
             let sources = motions.sources.iter();
             let selected = sources.filter(|source| source.held_out == held_out);

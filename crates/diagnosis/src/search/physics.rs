@@ -6,8 +6,7 @@ use effects::{Fitted, Term, UNIT};
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
-use crate::thresholds::LARGEST_TORQUE_SHARE;
-use crate::thresholds::UNEVEN;
+use crate::thresholds::{LARGEST_TORQUE_SHARE, UNEVEN};
 
 /// The number of smaller sizes that are tried: a thousandth of a size, a millionth, and so on.
 const SMALLER: i32 = 6;

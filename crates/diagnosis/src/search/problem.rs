@@ -1,5 +1,6 @@
 //! The joint search: which candidates together explain the residual.
 
+use effects::background::OWN_FRICTION;
 use effects::laws::{SIGN, VELOCITY};
 use effects::{Law, Term};
 use rayon::prelude::*;
@@ -164,6 +165,8 @@ impl Problem<'_> {
             self.table.terms.iter().position(|known| *known == term)
         };
         let own_friction = |joint: usize| {
+            let is_own = |term: &Term| term.is(&OWN_FRICTION) && term.joint == Some(joint);
+            self.table.terms.iter().any(is_own).then_some(())?;
             let level = scale * scales.torque[joint];
             let slope = level / scales.speed[joint].max(1e-300);
             Some([(column(&SIGN, joint)?, level), (column(&VELOCITY, joint)?, slope)])

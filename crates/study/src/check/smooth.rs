@@ -2,15 +2,13 @@
 
 use recording::RegularRecording;
 
-use super::thresholds::MOVES;
+use super::thresholds::{DIRECTION_UNCERTAIN, MOVES};
 use super::turns::range;
 
 /// Half the span of a parabola (s).
 const HALF_SPAN: f64 = 0.04;
 /// The number of instants.
 const INSTANTS: usize = 800;
-/// The part of a joint's largest speed below which its direction of motion is not certain.
-const RESTING: f64 = 0.02;
 
 /// Motion and torque at instants, `signal[joint][instant]`; the joints are in the requested order.
 pub struct Smooth {
@@ -25,7 +23,10 @@ pub struct Smooth {
 /// The sign of the `speeds`, smooth below a part of the largest one.
 fn dry(speeds: &Vec<f64>) -> Vec<f64> {
     let top = speeds.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
-    speeds.iter().map(|speed| (speed / (RESTING * top)).tanh()).collect()
+    speeds
+        .iter()
+        .map(|speed| (speed / (DIRECTION_UNCERTAIN * top)).tanh())
+        .collect()
 }
 
 /// Weights of a least-squares parabola over 2 `side` + 1 ticks: value, slope (1/s) and bend (1/s²).

@@ -109,3 +109,5 @@ pub const LEAD: f64 = 10.0;
 pub const BEYOND_LIMITS: f64 = 0.3;
 /// The share of the variance of a joint's torque that may remain with correct columns.
 pub const MAY_REMAIN: f64 = 0.3;
+/// In the check of signs, zeros and order, the part of a joint's largest speed below which its direction of motion is not certain.
+pub const DIRECTION_UNCERTAIN: f64 = 0.02;

@@ -203,7 +203,9 @@ impl Places {
         let name = std::mem::take(&mut element.name);
         if element.is_link {
             let inertia = match &place {
-                Place::At(range) => Inertia::from_urdf(&text[range.clone()])?,
+                Place::At(range) => {
+                    Inertia::from_urdf(&text[range.clone()]).with_context(|| format!("link \"{name}\""))?
+                }
                 Place::Before(_) | Place::Within(..) => Inertia::zero(),
             };
             self.links.insert(

@@ -17,7 +17,7 @@ pub fn difference(relative: f64) -> String {
     let text = percent(relative.abs());
     match relative {
         relative if text == "0 %" || relative == 0.0 => text,
-        relative if relative < -1.0 => format!("−{} times", rounded(-1.0 - relative, 2)),
+        relative if relative <= -1.005 => format!("−{} times", rounded(-1.0 - relative, 2)),
         relative if relative < 0.0 => format!("−{text}"),
         relative if relative >= 1.0 => format!("{} times", factor(1.0 + relative)),
         _ => format!("+{text}"),
@@ -100,6 +100,23 @@ mod tests {
             Ok((1e-3, "kg"))
         );
         assert_eq!(si("payload", "mass", None, "kg"), Ok((1.0, "kg")));
+    }
+
+    /// One parameter of each kind, with its unit in `diagnose --json`.
+    #[test]
+    fn the_diagnosis_says_the_same_units() {
+        for (effect, parameter, unit) in [
+            ("coulomb_friction", "level", "N m"),
+            ("torque_offset", "offset", "N m"),
+            ("encoder_offset", "offset", "rad"),
+            ("joint_elasticity", "stiffness", "N m/rad"),
+            ("joint_elasticity", "damping", "N m s/rad"),
+            ("quadratic_drag", "coefficient", "N m s²/rad²"),
+            ("stribeck_friction", "velocity", "rad/s"),
+            ("actuation_delay", "delay", "s"),
+        ] {
+            assert_eq!(si(effect, parameter, Some(JointKind::Revolute), unit), Ok((1.0, unit)));
+        }
     }
 
     #[test]
