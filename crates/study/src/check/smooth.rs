@@ -21,7 +21,7 @@ pub struct Smooth {
 }
 
 /// The sign of the `speeds`, smooth below a part of the largest one.
-fn dry(speeds: &Vec<f64>) -> Vec<f64> {
+fn dry(speeds: &[f64]) -> Vec<f64> {
     let top = speeds.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
     speeds
         .iter()
@@ -85,7 +85,7 @@ impl Smooth {
         let qd = sample(&parabola.slope, &regular.q);
         Self {
             q: sample(&parabola.value, &regular.q),
-            dry: qd.iter().map(dry).collect(),
+            dry: qd.iter().map(|speeds| dry(speeds)).collect(),
             qd,
             qdd: sample(&parabola.bend, &regular.q),
             tau: sample(&parabola.value, &regular.tau),
