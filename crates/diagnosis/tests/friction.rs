@@ -26,22 +26,6 @@ fn friction_that_grows_gradually_is_not_stribeck_friction() {
     }
 }
 
-/// Friction of the held-out recording that is larger than that of the others, which differ from each other, too, does not refute drag.
-#[test]
-fn more_friction_in_the_held_out_recording_does_not_refute_drag() {
-    let injected = |motion: &mut Motion, tau: &mut [f64]| {
-        let recording = (motion.clock / start(1)).floor() as usize;
-        let factor = [0.85, 1.0, 1.25][recording.min(2)];
-        for (tau, &speed) in tau.iter_mut().zip(&motion.qd) {
-            *tau += factor * (0.6 * speed.signum() + 0.4 * speed);
-        }
-        tau[ELBOW] += 0.5 * motion.qd[ELBOW] * motion.qd[ELBOW].abs();
-    };
-    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
-    let found = effects_on(&diagnosis, "elbow");
-    assert!(found.contains(&"quadratic_drag"), "{:?}", sentences(&diagnosis));
-}
-
 /// Friction that is larger throughout the held-out recording is not a transient.
 #[test]
 fn more_friction_in_the_held_out_recording_is_not_a_burst() {
