@@ -228,6 +228,37 @@ fn what_does_not_fit_the_robot_is_reported() {
     };
     says(&inspect(&with(0.01)), &["joint2: the torque is", "motor side"]);
     says(&inspect(&with(-1.0)), &["joint2: the torque", "the sign opposite"]);
+    says(
+        &inspect(&with(500.0)),
+        &["joint2: the torque is", "another unit", "about 2.0e-3"],
+    );
+}
+
+/// The drive of a wrist may have a thousand times the inertia of its link, which the URDF does not contain.
+#[test]
+fn the_inertia_of_a_drive_is_not_another_unit() {
+    let sandbox = Sandbox::new();
+    let text = simulated(&sandbox);
+    let (header, rows) = text.split_once('\n').expect("it has rows");
+    let at = |wanted: &str| header.split(',').position(|name| name == wanted).expect("it is there");
+    let [time, speed, torque] = ["t", "qd_joint6", "tau_joint6"].map(at);
+    let cells: Vec<Vec<f64>> = rows
+        .lines()
+        .map(|row| row.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    let mut changed = format!("{header}\n");
+    for k in 1..cells.len() - 1 {
+        let (before, after) = (&cells[k - 1], &cells[k + 1]);
+        let acceleration = (after[speed] - before[speed]) / (after[time] - before[time]);
+        let mut row = cells[k].clone();
+        row[torque] += 0.2 * acceleration;
+        let row: Vec<String> = row.iter().map(f64::to_string).collect();
+        changed += &row.join(",");
+        changed.push('\n');
+    }
+    sandbox.write("r.csv", &changed);
+    let said = sandbox.succeed(&["inspect", "r.csv", "--robot", "puma560"]);
+    assert!(!said.contains("tau_scale"), "{said}");
 }
 
 #[test]

@@ -20,12 +20,13 @@ use serde::Serialize;
 
 pub use self::column_map::{Change, Layout};
 use self::correction::Correction;
-use self::fit::{Fit, fit};
+use self::fit::{Fit, fit, residual_share_of_drive};
 use self::positions::Pair;
 pub use self::proposal::{Proposal, proposal};
 use self::smooth::Smooth;
 use self::thresholds::{
-    EFFORT_SLACK, LEAST_INSTANTS, LIMIT_SLACK, MOST_SPEED, MOTOR_SIDE, NOT_EXPLAINED, OF_SIZE, OTHER_UNIT, WORSE,
+    EFFORT_SLACK, LEAST_INSTANTS, LIMIT_SLACK, MOST_SPEED, MOTOR_SIDE, NEEDS_MODEL, NOT_EXPLAINED, OF_SIZE, OTHER_UNIT,
+    WORSE,
 };
 
 /// What a contradiction between recording and URDF is about.
@@ -302,15 +303,17 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     for (joint, &factor) in as_it_is.factor.iter().enumerate() {
         let matters = moves[joint] && as_it_is.needs_model(joint);
         let size = factor.abs();
-        if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) {
+        // Many URDFs omit the inertias of the drives, and that of a wrist's drive may be a thousand times its link's.
+        let is_drive = || residual_share_of_drive(smooth, joint) <= NEEDS_MODEL * as_it_is.residual_share[joint];
+        if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) && !(size > 1.0 && is_drive()) {
             let what = if size < 1.0 {
                 "motor side, or a current"
             } else {
                 "another unit"
             };
             let text = format!(
-                "the torque is {size:.2e} times the model's: {what}? Give tau_scale (about {:.3}) in a column map",
-                1.0 / size
+                "the torque is {size:.2e} times the model's: {what}? Give tau_scale (about {}) in a column map",
+                rounded(1.0 / size, 2)
             );
             let scale = Change::scale(names[joint], 1.0 / size);
             misfits.push(Misfit::new(

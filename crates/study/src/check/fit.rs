@@ -88,6 +88,20 @@ pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
     fit
 }
 
+/// The residual variance of a joint's torque over its variance if an inertia of its drive explains it, with friction and an offset, and
+/// not the model's torque.
+pub fn residual_share_of_drive(smooth: &Smooth, joint: usize) -> f64 {
+    let products = Products::new([
+        &smooth.qdd[joint],
+        &smooth.dry[joint],
+        &smooth.qd[joint],
+        &smooth.tau[joint],
+    ]);
+    let (without, _) = products.fitted(&[]);
+    let (residual_share, inertia) = products.fitted(&[MODEL]);
+    if inertia > 0.0 { residual_share } else { without }
+}
+
 /// The signals of a joint: the model's torque, dry and viscous friction of unit size, and the measured torque.
 const SIGNALS: usize = 4;
 const MODEL: usize = 0;
