@@ -4,9 +4,10 @@
 mod support;
 
 use arm::{Arm, Vector3};
-use diagnosis::Verdict;
+use diagnosis::{Diagnosis, Verdict};
 use support::{
-    ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, exports_what_it_reports, motion, sentences, trio,
+    ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, exports_what_it_reports, motion, named, sentences,
+    trio,
 };
 
 /// Checks that `effect` on `joint` is the only finding beside plain friction, with parameters within the relative
@@ -18,7 +19,7 @@ fn check(
     joint: Option<&str>,
     truth: &[(&str, f64)],
     tolerance: f64,
-) {
+) -> Diagnosis {
     let diagnosis = diagnosed(&trio(), robot, injected, Vec::new());
     let report = &diagnosis.report;
     let plain = ["viscous_friction", "coulomb_friction"];
@@ -67,6 +68,7 @@ fn check(
         let (nominal, augmented) = (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented);
         assert!(augmented < nominal, "{joint}: {nominal:?} → {augmented:?}");
     }
+    diagnosis
 }
 
 /// Beside a torque scale, friction and the other effects on the joint are stated in true newton metres, which the scale
@@ -231,6 +233,11 @@ fn torque_scale() {
 
 /// The torques of the shoulder as they are commanded, `delay` (s) before they act.
 fn delayed(delay: f64) -> impl Fn(&mut Motion, &mut [f64]) {
+    delayed_on(SHOULDER, delay, 0.0)
+}
+
+/// The torques of a joint, whose drive has a reflected inertia of `rotor` (kg m²), as they are commanded, `delay` (s) before they act.
+fn delayed_on(joint: usize, delay: f64, rotor: f64) -> impl Fn(&mut Motion, &mut [f64]) {
     let arm = trio();
     move |now: &mut Motion, tau: &mut [f64]| {
         baseline_friction(now, tau);
@@ -241,8 +248,27 @@ fn delayed(delay: f64) -> impl Fn(&mut Motion, &mut [f64]) {
         let mut workspace = arm::Workspace::new(&arm);
         arm.inverse_dynamics(&mut workspace, &ahead.q, &ahead.qd, &ahead.qdd, &mut later);
         baseline_friction(&ahead, &mut later);
-        tau[SHOULDER] = later[SHOULDER];
+        tau[joint] = later[joint] + rotor * ahead.qdd[joint];
     }
+}
+
+/// The links behind the elbow need a hundredth of its torque, and its drive all the rest.
+#[test]
+fn a_delay_shows_in_the_torque_of_a_drive_that_the_urdf_does_not_contain() {
+    let diagnosis = diagnosed(&trio(), &trio(), &delayed_on(ELBOW, 0.009, 20.0), Vec::new());
+    assert_eq!(
+        named(&diagnosis),
+        [("rotor_inertia", Some("elbow")), ("actuation_delay", Some("elbow"))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let delay = diagnosis
+        .report
+        .findings
+        .iter()
+        .find_map(|finding| finding.parameters.get("delay"));
+    let delay = delay.expect("it is named").value;
+    assert!((delay / 0.009 - 1.0).abs() < 0.15, "{delay}");
 }
 
 #[test]
@@ -314,7 +340,7 @@ fn joint_elasticity() {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
         baseline_friction(motion, tau);
     };
-    check(
+    let diagnosis = check(
         &trio(),
         &injected,
         "joint_elasticity",
@@ -322,6 +348,11 @@ fn joint_elasticity() {
         &[("stiffness", 250.0)],
         0.15,
     );
+    // The spring has no damping: what the fit gives it is an upper bound.
+    let is_spring = |finding: &&diagnosis::Finding| finding.effect == "joint_elasticity";
+    let mut springs = diagnosis.report.findings.iter().filter(is_spring);
+    let damping = springs.next().expect("it is named").parameters["damping"];
+    assert_eq!(damping.ci95[0], 0.0, "{damping:?}");
 }
 
 #[test]

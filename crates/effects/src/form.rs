@@ -22,7 +22,8 @@ pub struct Grounds<'a> {
     pub largest: &'a [f64],
     /// The torque that each joint needs by the model, without the largest 0.1 % (N m or N).
     pub needed: &'a [f64],
-    /// The standard deviation of the torque that accelerations need on each joint, over that of the measured torque.
+    /// The standard deviation of the torque that accelerations need on each joint, with the inertia of its drive, over that of the
+    /// measured torque.
     pub inertial: &'a [f64],
 }
 

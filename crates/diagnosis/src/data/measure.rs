@@ -2,7 +2,7 @@
 
 use arm::{Arm, Workspace};
 use effects::Scales;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
@@ -11,6 +11,9 @@ use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, RES
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
 const POSES: usize = 10;
+
+/// The ridge of the fit in [`inertial`], relative to each column's square.
+const ALIKE: f64 = 1e-6;
 
 /// The largest measured torque of each joint (N m or N).
 pub fn largest(motions: &Motions) -> Vec<f64> {
@@ -39,28 +42,54 @@ pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
 
 /// The standard deviation of the torque that accelerations need on each joint in the training recordings, after both filters,
 /// over that of the measured torque; zero if there is no measured torque.
+///
+/// It is what multiples of the model's inertial torque and of the joint's own acceleration explain of the measured torque beside
+/// gravity, friction and a constant: many URDFs omit the inertias of the drives, which may be most of what the joint moves.
 pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> {
-    let needed = |joint: usize| -> Vec<f64> {
-        let chunks = motions.chunks.iter().zip(rigid);
-        let fitted = chunks.filter(|(chunk, _)| is_fitted(motions, chunk));
-        fitted
-            .flat_map(|(chunk, rigid)| {
-                let at = |tick: usize| {
-                    (0..motions.dof)
-                        .map(|by| rigid.mass[joint][by][tick] * chunk.qdd[by][tick])
-                        .sum()
-                };
-                chunk.filter(&(0..chunk.ticks()).map(at).collect::<Vec<f64>>())
-            })
-            .collect()
-    };
     let share = |joint: usize| {
-        let values = needed(joint);
-        if torque[joint] > 0.0 {
-            deviation(values.iter()) / torque[joint]
-        } else {
-            0.0
+        if torque[joint] <= 0.0 {
+            return 0.0;
         }
+        let mut columns: [Vec<f64>; 6] = Default::default();
+        let mut measured = Vec::new();
+        let chunks = motions.chunks.iter().zip(rigid);
+        for (chunk, rigid) in chunks.filter(|(chunk, _)| is_fitted(motions, chunk)) {
+            let (qd, qdd) = (&chunk.qd[joint], &chunk.qdd[joint]);
+            let links = |tick: usize| -> f64 {
+                (0..motions.dof)
+                    .map(|by| rigid.mass[joint][by][tick] * chunk.qdd[by][tick])
+                    .sum()
+            };
+            let along =
+                |signal: &dyn Fn(usize) -> f64| chunk.filter(&(0..chunk.ticks()).map(signal).collect::<Vec<f64>>());
+            let signals: [&dyn Fn(usize) -> f64; 6] = [
+                &links,
+                &|tick| qdd[tick],
+                &|tick| rigid.tau[joint][tick] - links(tick),
+                &|tick| qd[tick],
+                &|tick| qd[tick].signum(),
+                &|_| 1.0,
+            ];
+            for (column, signal) in columns.iter_mut().zip(signals) {
+                column.extend(along(signal));
+            }
+            measured.extend(chunk.filter(&chunk.tau[joint]));
+        }
+        let inner = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let size = columns
+            .each_ref()
+            .map(|column| inner(column, column).sqrt().max(1e-300));
+        // The ridge lets columns that are multiples of each other share the torque.
+        let normal = SMatrix::<f64, 6, 6>::from_fn(|i, k| {
+            let ridge = if i == k { ALIKE } else { 0.0 };
+            inner(&columns[i], &columns[k]) / (size[i] * size[k]) + ridge
+        });
+        let right = SVector::<f64, 6>::from_fn(|i, _| inner(&columns[i], &measured) / size[i]);
+        let Some(factor) = normal.cholesky() else { return 0.0 };
+        let fitted = factor.solve(&right);
+        let (links, own) = (fitted[0] / size[0], fitted[1] / size[1]);
+        let needed = columns[0].iter().zip(&columns[1]).map(|(a, b)| links * a + own * b);
+        deviation(needed) / torque[joint]
     };
     (0..motions.dof).map(share).collect()
 }

@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
     parameters: &[Parameter::new("delay", Quantity::Time).within(Range::NotNegative)],
     main: &["delay"],
     // A link behind a gap or a spring also lags.
-    least_beside: &[("backlash", 0.5), ("joint_elasticity", 0.5)],
+    excludes: &["backlash", "joint_elasticity"],
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     detectability: Detectability::Sized {
@@ -48,6 +48,8 @@ pub static LATE: Law = Law {
 
 /// The longest delay of a drive (s). A position loop with a longer one is unstable. Source: first diagnosis.
 const LONGEST_DELAY: f64 = 0.03;
+/// From this part of the longest delay on, the fit was stopped by that limit. Source: the finest steps of a size are 1.2 %.
+const AT_LONGEST: f64 = 0.97;
 
 /// The part of the joint's torque that accelerations must need. A delay shows where the torque changes quickly; gravity
 /// and friction change slowly or at reversals, where a delay and a dependence on the velocity look alike. Source: a
@@ -73,6 +75,11 @@ impl EffectKind for ActuationDelay {
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
         let is_short = |term: Term| !term.is(&LATE) || term.sizes[0] < 1.001 * LONGEST_DELAY;
         UNIT.contains(&fitted.value(0)) && (0..fitted.len()).all(|k| is_short(fitted.term(k)))
+    }
+
+    /// At the longest delay, the fit would be better still with a longer one, which no drive has: something else is late.
+    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
+        effect.number("delay") < AT_LONGEST * LONGEST_DELAY
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
@@ -126,6 +133,14 @@ mod tests {
     fn delays_add_up() {
         let effect = Effect::of(&ActuationDelay).on("b").with("delay", 0.004);
         assert_eq!(machine(&effect).delays, [0.0, 0.004]);
+    }
+
+    #[test]
+    fn a_delay_that_the_limit_stopped_is_not_certain() {
+        for (delay, certain) in [(0.004, true), (0.0285, true), (0.0299, false), (LONGEST_DELAY, false)] {
+            let effect = Effect::of(&ActuationDelay).on("b").with("delay", delay);
+            assert_eq!(ActuationDelay.is_certain(&effect, &|_| None, 0.0), certain, "{delay}");
+        }
     }
 
     /// Cubic interpolation delays a parabola exactly, also by fractions of a tick.
