@@ -12,7 +12,7 @@ use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OFFSET, OWN_FRICTION, OWN_LOAD};
 
-use crate::regression::bodies::{PER_LINK, Quadratic, prior_about};
+use crate::regression::bodies::{PER_LINK, Quadratic, physical, possible_part, prior_about};
 use crate::regression::strengths::Strengths;
 use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR};
 
@@ -100,6 +100,42 @@ impl Prior {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
         self.links = links.map(|(nominal, change)| prior_about(nominal, change)).collect();
         self.identity = Arc::default();
+    }
+
+    /// The physically possible bodies nearest to those that differ from the URDF's by `changes` (ten inertial parameters per link),
+    /// as changes.
+    pub fn possible(&self, changes: &[f64]) -> Vec<f64> {
+        let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
+        let change = |(nominal, change): (&[f64], &[f64])| {
+            let body = physical(nominal, change);
+            (0..PER_LINK).map(|k| body[k] - nominal[k]).collect::<Vec<f64>>()
+        };
+        links.flat_map(change).collect()
+    }
+
+    /// The next bodies on the way from the physically possible bodies `from` to those of a fit, `to`, as changes of the URDF's inertial
+    /// parameters (ten per link), and the largest step of a link in the metric of pseudo-inertias about `from`. As long as the fit's
+    /// bodies are not possible, the way ends on this side of them.
+    pub fn towards(&self, from: &[f64], to: &[f64]) -> (Vec<f64>, f64) {
+        let step: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        let links = || {
+            self.nominal
+                .chunks_exact(PER_LINK)
+                .zip(from.chunks_exact(PER_LINK))
+                .zip(step.chunks_exact(PER_LINK))
+        };
+        let part = links()
+            .map(|((nominal, from), step)| possible_part(nominal, from, step))
+            .fold(1.0, f64::min);
+        let lengths = self.links.iter().zip(step.chunks_exact(PER_LINK)).map(|(prior, step)| {
+            let step = DVector::from_column_slice(step);
+            (step.transpose() * &prior.precision * &step)[(0, 0)].max(0.0).sqrt()
+        });
+        let length = lengths.fold(0.0, f64::max);
+        (
+            from.iter().zip(&step).map(|(from, step)| from + part * step).collect(),
+            length,
+        )
     }
 
     fn push(&mut self, term: Term, deviation: f64) {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Matrix4, SymmetricEigen};
 
-use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS};
+use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS, LEAST_OF_STEP};
 
 /// Parameters of a link: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PER_LINK: usize = 10;
@@ -122,6 +122,22 @@ pub fn prior_about(nominal: &[f64], change: &[f64]) -> Quadratic {
     }
 }
 
+/// The part of `step` that may be taken from the body `nominal` + `change` (ten inertial parameters each) so that in no direction less
+/// than [`LEAST_OF_STEP`] of it is left; one if all of it may.
+pub fn possible_part(nominal: &[f64], change: &[f64], step: &[f64]) -> f64 {
+    let body = floored(nominal) + pseudo_inertia(change);
+    let Some(inverse) = Cholesky::new(body).and_then(|factor| factor.l().try_inverse()) else {
+        return 1.0;
+    };
+    let relative = inverse * pseudo_inertia(step) * inverse.transpose();
+    let least = SymmetricEigen::new(relative).eigenvalues.min();
+    if least < LEAST_OF_STEP - 1.0 {
+        (LEAST_OF_STEP - 1.0) / least
+    } else {
+        1.0
+    }
+}
+
 /// The pseudo-inertia of a body, enlarged where it is too small to be inverted.
 fn floored(parameters: &[f64]) -> Matrix4<f64> {
     let pseudo = pseudo_inertia(parameters);
@@ -171,6 +187,21 @@ mod tests {
             let length = (step.transpose() * &metric * &step)[(0, 0)].sqrt();
             assert!((length - 0.2).abs() < 1e-9, "{length}");
             assert!(Cholesky::new(metric).is_some());
+        }
+    }
+
+    /// Of a body that loses all its mass, the step leaves the stated part; a step that adds to a body is taken whole.
+    #[test]
+    fn a_step_leaves_a_part_of_the_body() {
+        let nominal = [2.0, 0.2, 0.0, 0.4, 0.3, 0.01, 0.4, 0.02, 0.0, 0.2];
+        let times = |factor: f64| nominal.map(|value| factor * value);
+        let none = [0.0; PER_LINK];
+        assert!((possible_part(&nominal, &none, &times(-1.0)) - (1.0 - LEAST_OF_STEP)).abs() < 1e-9);
+        assert!((possible_part(&nominal, &none, &times(-4.0)) - (1.0 - LEAST_OF_STEP) / 4.0).abs() < 1e-9);
+        // About a body of half its size.
+        assert!((possible_part(&nominal, &times(-0.5), &times(-0.5)) - (1.0 - LEAST_OF_STEP)).abs() < 1e-9);
+        for factor in [-0.5, 0.0, 3.0] {
+            assert_eq!(possible_part(&nominal, &none, &times(factor)), 1.0, "{factor}");
         }
     }
 

@@ -93,6 +93,10 @@ pub const MOST_LAST: usize = 3;
 pub const PAYLOAD_JOINTS: usize = 2;
 /// The number of times that the prior of the links is expanded about the fitted bodies.
 pub const MOST_BODIES: usize = 2;
+/// The largest number of further expansions, until the fitted bodies are those about which the prior is expanded.
+pub const MOST_BODY_STEPS: usize = 20;
+/// A step of the bodies that is shorter than this in the metric of pseudo-inertias, relative to the prior's strength, is the last.
+pub const LAST_BODY_STEP: f64 = 0.01;
 /// The number of the most promising candidates that are fitted in full each round. Source: first diagnosis.
 pub const FITTED_AT_ONCE: usize = 8;
 /// The number of forms of one effect on one joint that are fitted in full before other effects. Source: cases of

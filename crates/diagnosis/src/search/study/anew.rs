@@ -14,7 +14,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::regression::strengths::Strengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::problem::Selection;
-use crate::thresholds::{MOST_BODIES, SIMULATED_ANEW};
+use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SIMULATED_ANEW};
 
 impl Study {
     /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.
@@ -95,6 +95,29 @@ impl Study {
             let products = self.training_products();
             let next = self.problem(&products).choose(selected.set, &selected.fit.weights);
             selected = self.with_best_strengths(next);
+        }
+        self.with_possible_bodies(selected)
+    }
+
+    /// `selected` with the prior expanded about the bodies of its own fit, which are physically possible then: the most probable ones.
+    fn with_possible_bodies(&mut self, mut selected: Selection) -> Selection {
+        let strongest = self.strengths.links.iter().copied().fold(0.0, f64::max);
+        if strongest == 0.0 {
+            return selected;
+        }
+        let mut bodies = self
+            .prior
+            .possible(&inertial_changes(&self.data, &self.table, &selected.fit));
+        for _ in 0..MOST_BODY_STEPS {
+            self.prior.set_bodies(&bodies);
+            let products = self.training_products();
+            selected = self.problem(&products).choose(selected.set, &selected.fit.weights);
+            let fitted = inertial_changes(&self.data, &self.table, &selected.fit);
+            let (next, length) = self.prior.towards(&bodies, &fitted);
+            if length < LAST_BODY_STEP * strongest {
+                break;
+            }
+            bodies = next;
         }
         selected
     }
