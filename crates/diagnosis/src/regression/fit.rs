@@ -2,13 +2,14 @@
 
 use std::sync::{Arc, Mutex};
 
-use nalgebra::{Cholesky, DMatrix, DVector, SMatrix, SVector};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::regression::background::Background;
 use crate::regression::table::{Gram, Table};
 use crate::thresholds::{EVIDENCE_PER_PERIOD, EVIDENCE_RATE, MOST_EVIDENCE_RATE};
 
 mod added;
+mod beside;
 mod eliminated;
 mod joined;
 mod left_out;
@@ -229,37 +230,6 @@ impl Products {
                 }
                 rss
             })
-            .collect()
-    }
-
-    /// The residual sums of squares `rss` of `fit` on each joint, less what the joint's `corrections` explain of them: columns with the
-    /// standard deviations of their coefficients.
-    pub fn rss_beside<const N: usize>(
-        &self,
-        table: &Table,
-        (fit, rss): (&Fit, &[f64]),
-        corrections: &[Option<[(usize, f64); N]>],
-    ) -> Vec<f64> {
-        let beside = |joint: usize| -> Option<f64> {
-            let (gram, place) = (&self.gram[joint], &table.place[joint]);
-            let own = corrections[joint].as_ref()?;
-            let places: Vec<usize> = own.iter().filter_map(|&(column, _)| place[column]).collect();
-            let places: [usize; N] = places.try_into().ok()?;
-            // A row's weight is that of its share of the evidence.
-            let ridge = self.variance(joint, rss[joint]) / self.evidence_per_row(joint).max(1e-300);
-            let matrix = SMatrix::<f64, N, N>::from_fn(|i, k| {
-                let prior = if i == k { ridge / own[i].1.powi(2) } else { 0.0 };
-                gram.of(places[i], places[k]) + prior
-            });
-            let right = SVector::<f64, N>::from_fn(|i, _| {
-                let fitted = fit.columns.iter().zip(&fit.coefficients);
-                let fitted = fitted.filter_map(|(&column, value)| Some(value * gram.of(places[i], place[column]?)));
-                gram.with_y(places[i]) - fitted.sum::<f64>()
-            });
-            Some(rss[joint] - right.dot(&matrix.cholesky()?.solve(&right)))
-        };
-        (0..rss.len())
-            .map(|joint| beside(joint).unwrap_or(rss[joint]))
             .collect()
     }
 

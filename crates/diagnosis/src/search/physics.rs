@@ -116,9 +116,14 @@ fn is_too_large(size: f64, is_possible: impl Fn(f64) -> bool) -> bool {
 pub fn is_at_its_size(candidate: &Candidate, table: &Table, fit: &Fit, links: f64) -> bool {
     let column = candidate.columns[0];
     let is_of_link = table.terms[column].law.link_side.is_some();
-    let factor = if is_of_link { 1.0 + UNEVEN * links } else { 1.0 };
-    let coefficient = fit.coefficient(column);
-    !candidate.hypothesis.spec().is_simulated || (UNIT.start() / factor..=UNIT.end() * factor).contains(&coefficient)
+    let wrong_by = if is_of_link { links } else { 0.0 };
+    !candidate.hypothesis.spec().is_simulated || is_near_one(fit.coefficient(column), wrong_by)
+}
+
+/// Whether a coefficient is near one if the inertia to which it is proportional may be wrong by `links` (relative).
+fn is_near_one(coefficient: f64, links: f64) -> bool {
+    let factor = 1.0 + UNEVEN * links;
+    (UNIT.start() / factor..=UNIT.end() * factor).contains(&coefficient)
 }
 
 /// The root mean square of a candidate's torque over that of the torque to be explained, on moving rows.
@@ -138,7 +143,26 @@ fn torque_share(candidate: &Candidate, table: &Table, fit: &Fit, joint: usize) -
 
 #[cfg(test)]
 mod tests {
-    use super::is_too_large;
+    use super::{is_near_one, is_too_large};
+
+    /// Two springs on simulated arms, whose links were wrong by 0.3 and more, had coefficients of 0.47 and 0.50.
+    #[test]
+    fn the_coefficient_of_a_spring_may_differ_from_one_by_as_much_as_the_links_are_wrong() {
+        for (coefficient, links, near) in [
+            (0.47, 0.0, false),
+            (0.47, 0.3, true),
+            (0.2, 0.3, false),
+            (1.0, 0.0, true),
+            (2.2, 0.0, false),
+            (2.2, 0.3, true),
+        ] {
+            assert_eq!(
+                is_near_one(coefficient, links),
+                near,
+                "{coefficient}, links wrong by {links}"
+            );
+        }
+    }
 
     #[test]
     fn a_size_far_beyond_its_limit_is_too_large_and_an_impossible_effect_is_not() {
