@@ -6,7 +6,7 @@ mod support;
 use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Verdict};
 use support::{
-    ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, exports_what_it_reports, motion, named, sentences,
+    ELBOW, Injected, Motion, SHOULDER, baseline_friction, delayed_on, diagnosed, exports_what_it_reports, sentences,
     trio,
 };
 
@@ -231,49 +231,16 @@ fn torque_scale() {
     );
 }
 
-/// The torques of the shoulder as they are commanded, `delay` (s) before they act.
-fn delayed(delay: f64) -> impl Fn(&mut Motion, &mut [f64]) {
-    delayed_on(SHOULDER, delay, 0.0)
-}
-
-/// The torques of a joint, whose drive has a reflected inertia of `rotor` (kg m²), as they are commanded, `delay` (s) before they act.
-fn delayed_on(joint: usize, delay: f64, rotor: f64) -> impl Fn(&mut Motion, &mut [f64]) {
-    let arm = trio();
-    move |now: &mut Motion, tau: &mut [f64]| {
-        baseline_friction(now, tau);
-        let is_this = |&variant: &usize| motion(3, now.time, variant).q == now.q;
-        let variant = (0..3).find(is_this).expect("it is one of the three");
-        let ahead = motion(3, now.time + delay, variant);
-        let mut later = [0.0; 3];
-        let mut workspace = arm::Workspace::new(&arm);
-        arm.inverse_dynamics(&mut workspace, &ahead.q, &ahead.qd, &ahead.qdd, &mut later);
-        baseline_friction(&ahead, &mut later);
-        tau[joint] = later[joint] + rotor * ahead.qdd[joint];
-    }
-}
-
-/// The links behind the elbow need a hundredth of its torque, and its drive all the rest.
-#[test]
-fn a_delay_shows_in_the_torque_of_a_drive_that_the_urdf_does_not_contain() {
-    let diagnosis = diagnosed(&trio(), &trio(), &delayed_on(ELBOW, 0.009, 20.0), Vec::new());
-    assert_eq!(
-        named(&diagnosis),
-        [("rotor_inertia", Some("elbow")), ("actuation_delay", Some("elbow"))],
-        "{:?}",
-        sentences(&diagnosis)
-    );
-    let delay = diagnosis
-        .report
-        .findings
-        .iter()
-        .find_map(|finding| finding.parameters.get("delay"));
-    let delay = delay.expect("it is named").value;
-    assert!((delay / 0.009 - 1.0).abs() < 0.15, "{delay}");
-}
-
 #[test]
 fn actuation_delay() {
-    check(&trio(), &delayed(0.012), "actuation_delay", Some("shoulder"), &[], 0.0);
+    check(
+        &trio(),
+        &delayed_on(SHOULDER, 0.012, 0.0),
+        "actuation_delay",
+        Some("shoulder"),
+        &[],
+        0.0,
+    );
 }
 
 #[test]
@@ -282,7 +249,7 @@ fn actuation_delay_has_its_size() {
         let truth = [("delay", delay)];
         check(
             &trio(),
-            &delayed(delay),
+            &delayed_on(SHOULDER, delay, 0.0),
             "actuation_delay",
             Some("shoulder"),
             &truth,

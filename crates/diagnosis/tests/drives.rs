@@ -9,7 +9,8 @@ use effects::Effect;
 use effects::drive::RotorInertia;
 use recording::RegularRecording;
 use support::{
-    ELBOW, Injected, Motion, SHOULDER, exports_what_it_reports, inputs, recorded, regular, sentences, start, trio,
+    ELBOW, Injected, Motion, SHOULDER, delayed_on, exports_what_it_reports, inputs, named, recorded, regular,
+    sentences, start, trio,
 };
 
 /// The rotor inertias of the true arm (kg m²).
@@ -129,4 +130,23 @@ fn load_dependent_friction() {
 fn thermal_drift() {
     let injected = friction(|_, _, clock| 2.0 + 2.4 * (-clock / 25.0).exp());
     check(&injected, "thermal_drift", ("coulomb", 2.0));
+}
+
+/// The links behind the elbow need a hundredth of its torque, and its drive all the rest.
+#[test]
+fn a_delay_shows_in_the_torque_of_a_drive_that_the_urdf_does_not_contain() {
+    let diagnosis = support::diagnosed(&trio(), &trio(), &delayed_on(ELBOW, 0.009, 20.0), Vec::new());
+    assert_eq!(
+        named(&diagnosis),
+        [("rotor_inertia", Some("elbow")), ("actuation_delay", Some("elbow"))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let delay = diagnosis
+        .report
+        .findings
+        .iter()
+        .find_map(|finding| finding.parameters.get("delay"));
+    let delay = delay.expect("it is named").value;
+    assert!((delay / 0.009 - 1.0).abs() < 0.15, "{delay}");
 }

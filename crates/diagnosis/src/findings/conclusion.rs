@@ -72,6 +72,9 @@ impl Conclusion {
         let mut inertials = inertials(last);
         let is_contact_named = !last.contacts().is_empty();
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
+        let located = locate(data, table, &data.nominal, residual);
+        let mut unexplained = unexplained(last, &transients, &located);
+        let links_not_named = inertials.leave_out_single_links_beside(&unexplained);
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
             others.splice(
@@ -93,8 +96,6 @@ impl Conclusion {
             findings.clear();
         }
         let fit = fit(last);
-        let located = locate(data, table, &data.nominal, residual);
-        let mut unexplained = unexplained(last, &transients, &located);
         poorly_predicted(last, &fit, !findings.is_empty(), &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
@@ -134,6 +135,7 @@ impl Conclusion {
         let no_motion = (options.next && !not_enough_data.is_empty()).then(|| NO_MOTION.to_owned());
         let notes = [
             no_motion,
+            links_not_named,
             torque_constants::note_on_unnamed(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];

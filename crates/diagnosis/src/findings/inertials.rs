@@ -8,7 +8,7 @@ use effects::arm::{INERTIAL_PARAMETER, InertialParameters, Payload, body};
 use effects::{Effect, EffectKind};
 
 use crate::regression::bodies::{PER_LINK, physical};
-use crate::report::{Confusable, Finding, LinkInertials, Parameter};
+use crate::report::{Confusable, Finding, LinkInertials, Parameter, Unexplained};
 use crate::search::candidate::Hypothesis;
 use crate::search::study::About;
 use crate::selection::FinalFit;
@@ -26,6 +26,33 @@ pub struct Inertials {
     pub effects: Vec<Effect>,
     /// The links, by the joint before the link.
     pub links: BTreeMap<String, LinkInertials>,
+}
+
+impl Inertials {
+    /// Leaves out the findings of single links beside residuals that no effect explains: a part of such a residual resembles one wrong
+    /// link more often than one link among right ones is wrong. What lasts for some time only counts on the joints on which the link
+    /// acts. Returns a note on the links.
+    pub fn leave_out_single_links_beside(&mut self, unexplained: &[Unexplained]) -> Option<String> {
+        let beside = |link: &Finding| {
+            let mut residuals = unexplained.iter();
+            residuals.find(|residual| residual.time.is_empty() || link.share_by_joint.contains_key(&residual.joint))
+        };
+        let mut left_out = Vec::new();
+        self.findings.retain(|finding| match (&finding.joint, beside(finding)) {
+            (Some(link), Some(residual)) => {
+                left_out.push((link.clone(), residual.joint.clone()));
+                false
+            }
+            _ => true,
+        });
+        let ((_, residual), links) = (left_out.first()?, left_out.iter().map(|(link, _)| link.as_str()));
+        let links: Vec<&str> = links.collect();
+        Some(format!(
+            "a change of the link after {} would explain a part of the torque, but is not named, because it may be a part of what remains \
+             unexplained on {residual}",
+            links.join(" and of that after ")
+        ))
+    }
 }
 
 const KEYS: [&str; PER_LINK] = [
@@ -229,4 +256,56 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         add(None, &together, BTreeMap::from([("relative", relative)]));
     }
     list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::TimeWindow;
+
+    fn link(joint: Option<&str>, acts_on: &[&str]) -> Finding {
+        let body = Inertia::zero();
+        Finding {
+            joint: joint.map(str::to_owned),
+            share_by_joint: acts_on.iter().map(|&joint| (joint.to_owned(), 0.1)).collect(),
+            ..Finding::of(InertialParameters::effect("a".to_owned(), &body))
+        }
+    }
+
+    fn residual(joint: &str, lasts: bool) -> Unexplained {
+        let window = TimeWindow {
+            recording: "r.csv".into(),
+            start: 1.0,
+            end: 2.0,
+        };
+        Unexplained {
+            joint: joint.to_owned(),
+            share: 0.1,
+            depends_on: Vec::new(),
+            time: if lasts { Vec::new() } else { vec![window] },
+            next: String::new(),
+        }
+    }
+
+    /// The whole arm keeps its name beside any residual, and a single link beside a short one on a joint that it does not act on.
+    #[test]
+    fn a_single_link_is_not_named_beside_a_residual_that_it_may_be_a_part_of() {
+        let left = |residuals: &[Unexplained]| -> (Vec<Option<String>>, bool) {
+            let mut list = Inertials {
+                findings: vec![link(None, &["a", "b", "c"]), link(Some("b"), &["a", "b"])],
+                ..Inertials::default()
+            };
+            let note = list.leave_out_single_links_beside(residuals);
+            (
+                list.findings.into_iter().map(|finding| finding.joint).collect(),
+                note.is_some(),
+            )
+        };
+        let both = vec![None, Some("b".to_owned())];
+        assert_eq!(left(&[]), (both.clone(), false));
+        assert_eq!(left(&[residual("c", false)]), (both, false));
+        for residual in [residual("c", true), residual("a", false)] {
+            assert_eq!(left(&[residual]), (vec![None], true));
+        }
+    }
 }

@@ -14,7 +14,7 @@ use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
-use crate::selection::naming::{Named, may_be_nothing, name};
+use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
 use crate::selection::predict::{errors_with, structured};
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
@@ -181,6 +181,9 @@ fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<
     let all = judged.members.iter().flat_map(names).map(|named| named.effect);
     let all: Vec<Effect> = all.collect();
     let accuracy = torque_constants::accuracy(study, &judged.named.set);
+    let row_times = study.data.motions.row_times();
+    let rows = study.table.rows_of(|recording| study.data.fitted[recording]);
+    let times: Vec<f64> = rows.into_iter().map(|row| row_times[row]).collect();
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
         // The correction of its sizes may make the effect impossible, for example by a negative level.
@@ -190,7 +193,9 @@ fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             let kind = named.effect.kind().get();
-            !kind.is_certain(&named.effect, &interval, accuracy) || kind.is_contradicted(&named.effect, &all)
+            interval("onset").is_some_and(|onset| is_anywhere(onset, &times))
+                || !kind.is_certain(&named.effect, &interval, accuracy)
+                || kind.is_contradicted(&named.effect, &all)
         };
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };

@@ -308,9 +308,13 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 && share >= study.thresholds.beside_a_certain * others(true)
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
-        member.evidence < needed
-            || member.beyond < hypothesis(member).spec().least_beyond_simpler
-            || !(0..dof).any(stands_out)
+        // A brief push is not distinguished from what the end of a gap does to all joints, but on the gap's own one.
+        let stands_out = if hypothesis(member).spec().may_be_in_one_recording {
+            stands_out(at)
+        } else {
+            (0..dof).any(stands_out)
+        };
+        member.evidence < needed || member.beyond < hypothesis(member).spec().least_beyond_simpler || !stands_out
     };
     (0..members.len())
         .filter(|&k| fails(&members[k]))

@@ -2,6 +2,8 @@
 
 mod onset;
 
+pub use onset::is_anywhere;
+
 use std::collections::BTreeMap;
 
 use arm::Arm;

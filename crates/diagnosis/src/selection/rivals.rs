@@ -159,13 +159,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
             on_all_joints.extend(factors.iter().map(|&c| result(c, &next)));
         }
     }
-    // If an offset is constant from the beginning, its size relative to the friction is that of few asymmetries. What has changed
-    // while the friction was the same may be either, and so may an asymmetry: it has the size of both.
-    let sets_in = || !study.always_acts(member);
-    let is_equal = || finding.hypothesis.is(&FrictionAsymmetry) || sets_in();
     let alias = alias.filter(|_| decided.is_none_or(|nats| nats < NEARLY_NATS));
-    let equally_likely = alias.filter(|_| decided.is_none() && is_equal());
-    results.extend(equally_likely.map(|(hypothesis, joint)| (0.0, 0.0, hypothesis, joint)));
     let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {
         let hypothesis = Hypothesis::of(&InertialParameters);
@@ -193,6 +187,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         .filter(|(loss, ..)| *loss <= allowance)
         .map(|&(_, _, hypothesis, joint)| (hypothesis, joint))
         .collect();
+    rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
     let found = Paired {
         study,
         problem,
@@ -210,8 +205,13 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     // A simpler hypothesis is more probable: the margin includes the costs.
     let pair = pairs.iter().map(|pair| pair.1).fold(f64::INFINITY, f64::min);
     let margin_over_single = explained.min(single).min(pair).min(decided.unwrap_or(f64::INFINITY));
-    let margin = margin_over_single.min(of_all_joints);
-    rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
+    // Neither the motion nor its size tells what a constant torque is that is smaller than the friction.
+    let over_alias = if alias.is_some() && decided.is_none() {
+        0.0
+    } else {
+        f64::INFINITY
+    };
+    let margin = margin_over_single.min(of_all_joints).min(over_alias);
     Standing {
         rivals,
         pairs: pairs.into_iter().map(|pair| pair.2).collect(),

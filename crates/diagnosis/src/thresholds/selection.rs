@@ -70,6 +70,9 @@ pub const MOST_REFUSED: usize = 3;
 /// A time is outside the 95 % interval of an onset if the fit is worse by this with an onset at that time (nats). Source:
 /// half the square of 1.96, doubled because of the correlation of residuals and the reach of the filter.
 pub const ONSET_INTERVAL: f64 = 2.0 * 1.92;
+/// The largest part of the fitted rows that the interval of an onset may contain. Source: `prove`, seed 5501, in which a false drag
+/// set in somewhere between the first row and the last.
+pub const MOST_OF_AN_ONSET: f64 = 0.5;
 /// The part of its duration by which a contact that begins gently seems to begin later. Source: `prove`, seeds 1, 2, 3,
 /// 7, 2026 and 2027.
 pub const PUSH_START: f64 = 0.1;

@@ -153,6 +153,22 @@ pub fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
         .collect()
 }
 
+/// The torques of a joint, whose drive has a reflected inertia of `rotor` (kg m²), as they are commanded, `delay` (s) before they act.
+pub fn delayed_on(joint: usize, delay: f64, rotor: f64) -> impl Fn(&mut Motion, &mut [f64]) {
+    let arm = trio();
+    move |now: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(now, tau);
+        let is_this = |&variant: &usize| motion(3, now.time, variant).q == now.q;
+        let variant = (0..3).find(is_this).expect("it is one of the three");
+        let ahead = motion(3, now.time + delay, variant);
+        let mut later = [0.0; 3];
+        let mut workspace = Workspace::new(&arm);
+        arm.inverse_dynamics(&mut workspace, &ahead.q, &ahead.qd, &ahead.qdd, &mut later);
+        baseline_friction(&ahead, &mut later);
+        tau[joint] = later[joint] + rotor * ahead.qdd[joint];
+    }
+}
+
 /// Baseline friction on every joint.
 pub fn baseline_friction(motion: &Motion, tau: &mut [f64]) {
     for joint in 0..3 {

@@ -4,7 +4,7 @@ use effects::Term;
 
 use super::Reader;
 use crate::report::Parameter;
-use crate::thresholds::{ONSET_INTERVAL, PUSH_START};
+use crate::thresholds::{MOST_OF_AN_ONSET, ONSET_INTERVAL, PUSH_START};
 
 impl Reader<'_> {
     /// Records and returns the onset of the candidate; `None` if it always acts.
@@ -92,5 +92,31 @@ impl Reader<'_> {
             likeliest,
             [time(first.saturating_sub(1)).min(likeliest), time(last).max(likeliest)],
         )
+    }
+}
+
+/// Whether the interval of an onset (s) contains so many of the fitted rows, which have these `times`, that the effect does not set in
+/// within them.
+pub fn is_anywhere([first, last]: [f64; 2], times: &[f64]) -> bool {
+    let within = times.iter().filter(|time| (first..=last).contains(*time)).count();
+    within as f64 > MOST_OF_AN_ONSET * times.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_anywhere;
+
+    /// An hour between two recordings contains no rows: an onset within it has a place.
+    #[test]
+    fn an_onset_between_recordings_is_located_and_one_at_any_row_is_not() {
+        let times: Vec<f64> = (0..100).chain(3700..3800).map(f64::from).collect();
+        for (onset, anywhere) in [
+            ([98.0, 3701.0], false),
+            ([0.0, 90.0], false),
+            ([0.0, 3799.0], true),
+            ([0.2, 3703.0], true),
+        ] {
+            assert_eq!(is_anywhere(onset, &times), anywhere, "{onset:?}");
+        }
     }
 }
