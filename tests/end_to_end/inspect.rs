@@ -211,12 +211,10 @@ fn what_does_not_fit_the_robot_is_reported() {
         .replace("tau_joint3", "tau_joint2");
     let swapped = format!("{}\n{rows}", swapped.replace("tau_x", "tau_joint3"));
     says(&inspect(&swapped), &["the torques of joint2 and joint3 seem swapped"]);
-    // The torque of joint 2 as its motor would feel it behind a gear of 100, and turned.
-    let at = header
-        .split(',')
-        .position(|name| name == "tau_joint2")
-        .expect("it is there");
-    let with = |factor: f64| {
+    // A torque as the motor would feel it behind a gear of 100, turned, and in mN m. That of joint 1, whose axis is vertical, is also what
+    // an inertia of its drive would need.
+    let with = |torque: &str, factor: f64| {
+        let at = header.split(',').position(|name| name == torque).expect("it is there");
         let mut changed = format!("{header}\n");
         for row in rows.lines() {
             let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
@@ -226,12 +224,21 @@ fn what_does_not_fit_the_robot_is_reported() {
         }
         changed
     };
-    says(&inspect(&with(0.01)), &["joint2: the torque is", "motor side"]);
-    says(&inspect(&with(-1.0)), &["joint2: the torque", "the sign opposite"]);
     says(
-        &inspect(&with(500.0)),
-        &["joint2: the torque is", "another unit", "about 2.0e-3"],
+        &inspect(&with("tau_joint2", 0.01)),
+        &["joint2: the torque is", "motor side"],
     );
+    says(
+        &inspect(&with("tau_joint2", -1.0)),
+        &["joint2: the torque", "the sign opposite"],
+    );
+    for joint in ["joint1", "joint2"] {
+        let said = inspect(&with(&format!("tau_{joint}"), 1000.0));
+        says(
+            &said,
+            &[&format!("{joint}: the torque is"), "another unit", "about 1.0e-3"],
+        );
+    }
 }
 
 /// The drive of a wrist may have a thousand times the inertia of its link, which the URDF does not contain.

@@ -258,8 +258,8 @@ pub struct Spec {
     pub least_beyond_simpler: f64,
     /// The effect that is fitted with it and named in addition.
     pub brings: Option<&'static str>,
-    /// Effects that cannot act on the same joint, or on the last joint beside an effect on the whole arm. It is sufficient that one of two
-    /// effects lists the other.
+    /// Effects that are not named on the same joint, or on the last joint beside an effect on the whole arm: they exclude each other, or
+    /// are not told apart there. It is sufficient that one of two effects lists the other.
     pub excludes: &'static [&'static str],
     /// The evidence that it must bring in addition to that of its coefficients (nats).
     pub prior: f64,

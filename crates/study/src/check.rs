@@ -304,8 +304,12 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         let matters = moves[joint] && as_it_is.needs_model(joint);
         let size = factor.abs();
         // Many URDFs omit the inertias of the drives, and that of a wrist's drive may be a thousand times its link's.
-        let is_drive = || residual_share_of_drive(smooth, joint) <= NEEDS_MODEL * as_it_is.residual_share[joint];
-        if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) && !(size > 1.0 && is_drive()) {
+        let is_drive = || {
+            size > 1.0
+                && !torque_unit::may_be_decimal(size)
+                && residual_share_of_drive(smooth, joint) <= NEEDS_MODEL * as_it_is.residual_share[joint]
+        };
+        if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) && !is_drive() {
             let what = if size < 1.0 {
                 "motor side, or a current"
             } else {

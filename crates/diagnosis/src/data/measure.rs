@@ -2,7 +2,7 @@
 
 use arm::{Arm, Workspace};
 use effects::Scales;
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix};
 
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
@@ -11,9 +11,6 @@ use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, RES
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
 const POSES: usize = 10;
-
-/// The ridge of the fit in [`inertial`], relative to each column's square.
-const ALIKE: f64 = 1e-6;
 
 /// The largest measured torque of each joint (N m or N).
 pub fn largest(motions: &Motions) -> Vec<f64> {
@@ -43,55 +40,95 @@ pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
 /// The standard deviation of the torque that accelerations need on each joint in the training recordings, after both filters,
 /// over that of the measured torque; zero if there is no measured torque.
 ///
-/// It is what multiples of the model's inertial torque and of the joint's own acceleration explain of the measured torque beside
-/// gravity, friction and a constant: many URDFs omit the inertias of the drives, which may be most of what the joint moves.
+/// It is the larger of what the URDF's links need and what the drive's inertia explains of the measured torque: many URDFs omit the
+/// inertias of the drives, which may be most of what a joint moves.
 pub fn inertial(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<f64> {
     let share = |joint: usize| {
         if torque[joint] <= 0.0 {
             return 0.0;
         }
-        let mut columns: [Vec<f64>; 6] = Default::default();
-        let mut measured = Vec::new();
+        let mut signals = Inertial::default();
         let chunks = motions.chunks.iter().zip(rigid);
         for (chunk, rigid) in chunks.filter(|(chunk, _)| is_fitted(motions, chunk)) {
-            let (qd, qdd) = (&chunk.qd[joint], &chunk.qdd[joint]);
-            let links = |tick: usize| -> f64 {
-                (0..motions.dof)
-                    .map(|by| rigid.mass[joint][by][tick] * chunk.qdd[by][tick])
-                    .sum()
-            };
-            let along =
-                |signal: &dyn Fn(usize) -> f64| chunk.filter(&(0..chunk.ticks()).map(signal).collect::<Vec<f64>>());
-            let signals: [&dyn Fn(usize) -> f64; 6] = [
-                &links,
-                &|tick| qdd[tick],
-                &|tick| rigid.tau[joint][tick] - links(tick),
-                &|tick| qd[tick],
-                &|tick| qd[tick].signum(),
-                &|_| 1.0,
-            ];
-            for (column, signal) in columns.iter_mut().zip(signals) {
-                column.extend(along(signal));
-            }
-            measured.extend(chunk.filter(&chunk.tau[joint]));
+            signals.add(joint, chunk, rigid);
         }
-        let inner = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let size = columns
-            .each_ref()
-            .map(|column| inner(column, column).sqrt().max(1e-300));
-        // The ridge lets columns that are multiples of each other share the torque.
-        let normal = SMatrix::<f64, 6, 6>::from_fn(|i, k| {
-            let ridge = if i == k { ALIKE } else { 0.0 };
-            inner(&columns[i], &columns[k]) / (size[i] * size[k]) + ridge
-        });
-        let right = SVector::<f64, 6>::from_fn(|i, _| inner(&columns[i], &measured) / size[i]);
-        let Some(factor) = normal.cholesky() else { return 0.0 };
-        let fitted = factor.solve(&right);
-        let (links, own) = (fitted[0] / size[0], fitted[1] / size[1]);
-        let needed = columns[0].iter().zip(&columns[1]).map(|(a, b)| links * a + own * b);
-        deviation(needed) / torque[joint]
+        deviation(signals.0[LINKS].iter()).max(signals.explained_by_acceleration()) / torque[joint]
     };
     (0..motions.dof).map(share).collect()
+}
+
+/// The number of signals of a joint in [`Inertial`].
+const SIGNALS: usize = 10;
+/// The torque that the URDF's links need for accelerations, the joint's own acceleration, and the measured torque; before them is what
+/// else may explain the torque.
+const LINKS: usize = SIGNALS - 3;
+const OWN: usize = SIGNALS - 2;
+const MEASURED: usize = SIGNALS - 1;
+/// A signal that differs from those before it by less than this part of its square is left out.
+const LEAST_OF_ITS_OWN: f64 = 1e-9;
+
+/// Signals of a joint on the rows of the training recordings.
+#[derive(Default)]
+struct Inertial([Vec<f64>; SIGNALS]);
+
+impl Inertial {
+    fn add(&mut self, joint: usize, chunk: &Chunk, rigid: &Rigid) {
+        let (q, qd, qdd) = (&chunk.q[joint], &chunk.qd[joint], &chunk.qdd[joint]);
+        let links = |tick: usize| -> f64 {
+            let accelerations = rigid.mass[joint].iter().zip(&chunk.qdd);
+            accelerations.map(|(mass, qdd)| mass[tick] * qdd[tick]).sum()
+        };
+        // In a slow or periodic motion, a wrong gravity torque resembles one of the accelerations.
+        let signals: [&dyn Fn(usize) -> f64; SIGNALS] = [
+            &|_| 1.0,
+            &|tick| rigid.tau[joint][tick] - links(tick),
+            &|tick| q[tick],
+            &|tick| q[tick].sin(),
+            &|tick| q[tick].cos(),
+            &|tick| qd[tick],
+            &|tick| qd[tick].signum(),
+            &links,
+            &|tick| qdd[tick],
+            &|tick| chunk.tau[joint][tick],
+        ];
+        for (values, signal) in self.0.iter_mut().zip(signals) {
+            values.extend(chunk.filter(&(0..chunk.ticks()).map(signal).collect::<Vec<f64>>()));
+        }
+    }
+
+    /// The standard deviation of the measured torque that the accelerations of links and drive explain beside all other signals, with
+    /// inertias that are not negative (N m or N).
+    fn explained_by_acceleration(&self) -> f64 {
+        let inner = |i: usize, k: usize| -> f64 { self.0[i].iter().zip(&self.0[k]).map(|(a, b)| a * b).sum() };
+        let whole = SMatrix::<f64, SIGNALS, SIGNALS>::from_fn(inner);
+        let mut left = whole;
+        let eliminate = |left: &mut SMatrix<f64, SIGNALS, SIGNALS>, signal: usize| {
+            let own = left[(signal, signal)];
+            if own > LEAST_OF_ITS_OWN * whole[(signal, signal)] {
+                let (column, row) = (left.column(signal).into_owned(), left.row(signal).into_owned());
+                *left -= column * row / own;
+            }
+        };
+        (0..LINKS).for_each(|signal| eliminate(&mut left, signal));
+        let before = left[(MEASURED, MEASURED)];
+        // Either alone, and both.
+        let sets: [&[usize]; 3] = [&[LINKS], &[OWN], &[LINKS, OWN]];
+        let explained = sets.map(|set| {
+            let mut rest = left;
+            let mut is_positive = true;
+            for &signal in set {
+                is_positive &= rest[(signal, MEASURED)] >= 0.0;
+                eliminate(&mut rest, signal);
+            }
+            if is_positive {
+                before - rest[(MEASURED, MEASURED)]
+            } else {
+                0.0
+            }
+        });
+        let most = explained.into_iter().fold(0.0, f64::max);
+        (most / self.0[MEASURED].len().max(1) as f64).sqrt()
+    }
 }
 
 /// The standard deviation of each joint's measured torque in the training recordings (N m or N).
@@ -223,4 +260,71 @@ pub fn noise(motions: &Motions, rigid: &[Rigid], fitted: &[bool]) -> Vec<f64> {
             largest
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Signals of a joint with the inertia `links` in the URDF, where the measured torque is a function of q, q̇ and q̈, in three sines of
+    /// these frequencies (Hz).
+    fn signals(links: f64, hertz: [f64; 3], torque: impl Fn(f64, f64, f64) -> f64) -> Inertial {
+        let mut signals = Inertial::default();
+        for k in 0..2000 {
+            let time = 0.02 * f64::from(k);
+            let [mut q, mut qd, mut qdd] = [0.4, 0.0, 0.0];
+            for (turn, hertz) in hertz.into_iter().enumerate() {
+                let omega = std::f64::consts::TAU * hertz;
+                let (sin, cos) = (omega * time + turn as f64).sin_cos();
+                q += 0.3 * sin;
+                qd += 0.3 * omega * cos;
+                qdd -= 0.3 * omega * omega * sin;
+            }
+            let row = [
+                1.0,
+                10.0 * q.sin(),
+                q,
+                q.sin(),
+                q.cos(),
+                qd,
+                qd.signum(),
+                links * qdd,
+                qdd,
+                torque(q, qd, qdd),
+            ];
+            signals
+                .0
+                .iter_mut()
+                .zip(row)
+                .for_each(|(values, value)| values.push(value));
+        }
+        signals
+    }
+
+    /// The links need nothing, and the drive needs all.
+    #[test]
+    fn the_inertia_of_a_drive_is_seen_where_the_links_have_none() {
+        for links in [0.0, 1e-6] {
+            let signals = signals(links, [0.3, 0.5, 0.8], |_, qd, qdd| {
+                0.2 * qdd + 0.1 * qd + 0.05 * qd.signum()
+            });
+            let truth = 0.2 * deviation(signals.0[OWN].iter());
+            let found = signals.explained_by_acceleration();
+            assert!((found / truth - 1.0).abs() < 0.1, "{links}: {found} instead of {truth}");
+        }
+    }
+
+    /// A gravity torque of 3 N m that the URDF does not have, in a slow motion, is not the torque of an acceleration.
+    #[test]
+    fn a_wrong_gravity_torque_is_no_inertia() {
+        for hertz in [[0.1, 0.1, 0.1], [0.05, 0.09, 0.13]] {
+            let signals = signals(0.3, hertz, |q, _, qdd| 10.0 * q.sin() + 3.0 * q.cos() + 0.3 * qdd);
+            let needed = 0.3 * deviation(signals.0[OWN].iter());
+            let found = signals.explained_by_acceleration();
+            assert!(found <= needed * 1.001, "{hertz:?}: {found} of {needed}");
+        }
+        // An inertia is not negative.
+        let signals = signals(0.3, [0.3, 0.5, 0.8], |_, _, qdd| -0.3 * qdd);
+        assert_eq!(signals.explained_by_acceleration(), 0.0);
+    }
 }

@@ -7,7 +7,7 @@ use effects::Effect;
 use effects::drive::JointElasticity;
 
 use super::found::findings;
-use super::inertials::{Inertials, inertials};
+use super::inertials::{Inertials, inertials, leave_out_single_links};
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
@@ -72,9 +72,6 @@ impl Conclusion {
         let mut inertials = inertials(last);
         let is_contact_named = !last.contacts().is_empty();
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
-        let located = locate(data, table, &data.nominal, residual);
-        let mut unexplained = unexplained(last, &transients, &located);
-        let links_not_named = inertials.leave_out_single_links_beside(&unexplained);
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
             others.splice(
@@ -96,12 +93,16 @@ impl Conclusion {
             findings.clear();
         }
         let fit = fit(last);
-        poorly_predicted(last, &fit, !findings.is_empty(), &mut unexplained);
+        let located = locate(data, table, &data.nominal, residual);
+        let mut unexplained = unexplained(last, &transients, &located);
+        let has_findings = !findings.is_empty();
+        poorly_predicted(last, &fit, has_findings, &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();
         }
-        if findings.is_empty() {
+        let links_not_named = leave_out_single_links(&mut findings, &unexplained);
+        if !has_findings {
             beyond_limits(&data.arm, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);
         } else if unexplained.iter().any(|open| open.depends_on.is_empty()) {

@@ -28,31 +28,32 @@ pub struct Inertials {
     pub links: BTreeMap<String, LinkInertials>,
 }
 
-impl Inertials {
-    /// Leaves out the findings of single links beside residuals that no effect explains: a part of such a residual resembles one wrong
-    /// link more often than one link among right ones is wrong. What lasts for some time only counts on the joints on which the link
-    /// acts. Returns a note on the links.
-    pub fn leave_out_single_links_beside(&mut self, unexplained: &[Unexplained]) -> Option<String> {
-        let beside = |link: &Finding| {
-            let mut residuals = unexplained.iter();
-            residuals.find(|residual| residual.time.is_empty() || link.share_by_joint.contains_key(&residual.joint))
-        };
-        let mut left_out = Vec::new();
-        self.findings.retain(|finding| match (&finding.joint, beside(finding)) {
-            (Some(link), Some(residual)) => {
-                left_out.push((link.clone(), residual.joint.clone()));
+/// Leaves out the findings of single links beside residuals that no effect explains: a part of such a residual resembles one wrong link
+/// more often than one link among right ones is wrong. What only lasts for some time counts on the joints on which the link acts.
+/// Returns a note on the links.
+pub fn leave_out_single_links(
+    findings: &mut Vec<(Finding, Option<usize>)>,
+    unexplained: &[Unexplained],
+) -> Option<String> {
+    let lasts = |residual: &Unexplained| residual.time.is_empty() || !residual.depends_on.is_empty();
+    let mut left_out = Vec::new();
+    findings.retain(|(finding, _)| {
+        let mut residuals = unexplained.iter();
+        let beside = residuals.find(|residual| lasts(residual) || finding.share_by_joint.contains_key(&residual.joint));
+        match (&finding.joint, beside) {
+            (Some(link), Some(residual)) if finding.effect == InertialParameters.spec().name => {
+                left_out.push(format!("of the link after {link} (beside {})", residual.joint));
                 false
             }
             _ => true,
-        });
-        let ((_, residual), links) = (left_out.first()?, left_out.iter().map(|(link, _)| link.as_str()));
-        let links: Vec<&str> = links.collect();
-        Some(format!(
-            "a change of the link after {} would explain a part of the torque, but is not named, because it may be a part of what remains \
-             unexplained on {residual}",
-            links.join(" and of that after ")
-        ))
-    }
+        }
+    });
+    (!left_out.is_empty()).then(|| {
+        format!(
+            "a change {} would explain a part of the torque, but is not named, because it may be a part of what remains unexplained",
+            left_out.join(", and ")
+        )
+    })
 }
 
 const KEYS: [&str; PER_LINK] = [
@@ -291,13 +292,11 @@ mod tests {
     #[test]
     fn a_single_link_is_not_named_beside_a_residual_that_it_may_be_a_part_of() {
         let left = |residuals: &[Unexplained]| -> (Vec<Option<String>>, bool) {
-            let mut list = Inertials {
-                findings: vec![link(None, &["a", "b", "c"]), link(Some("b"), &["a", "b"])],
-                ..Inertials::default()
-            };
-            let note = list.leave_out_single_links_beside(residuals);
+            let findings = [link(None, &["a", "b", "c"]), link(Some("b"), &["a", "b"])];
+            let mut findings: Vec<(Finding, Option<usize>)> = findings.map(|finding| (finding, None)).into();
+            let note = leave_out_single_links(&mut findings, residuals);
             (
-                list.findings.into_iter().map(|finding| finding.joint).collect(),
+                findings.into_iter().map(|(finding, _)| finding.joint).collect(),
                 note.is_some(),
             )
         };

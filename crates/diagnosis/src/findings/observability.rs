@@ -150,7 +150,12 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
                 would_be_seen_below: below.map(|size| (key, size)).into_iter().collect(),
             });
         };
+        let excludes = |a: Kind, b: Kind| a.spec().excludes.contains(&b.spec().name);
+        let is_excluded = found
+            .iter()
+            .any(|&other| excludes(kind, other) || excludes(other, kind));
         match kind.spec().detectability {
+            Detectability::Sized { .. } if is_excluded => add(EXPLAINED, None, None),
             Detectability::Never | Detectability::OfArm { .. } => {}
             Detectability::Limit { because } => add(because, None, Some(largest_torque(&study.data, joint))),
             Detectability::Sized {

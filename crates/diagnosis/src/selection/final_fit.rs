@@ -52,12 +52,11 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
         }
         let resampled = resample(study, &judged.named);
         match unclear(study, judged, &resampled) {
-            Some((unclear, true)) => {
-                study.refuse(unclear);
-                drop_name(study, judged, unclear, "it contradicts other effects, or its own rows");
-            }
-            Some((unclear, false)) => {
-                drop_name(study, judged, unclear, "its interval contains the value without effect");
+            Some((unclear, rule)) => {
+                if rule == CONTRADICTS {
+                    study.refuse(unclear);
+                }
+                drop_name(study, judged, unclear, rule);
             }
             None => match without_moment(study, judged, &resampled) {
                 Some(payload) => {
@@ -172,8 +171,12 @@ fn give_up(study: &Study, judged: &mut Judged) {
     }
 }
 
-/// The weakest effect whose size may be zero or that is physically impossible, and whether it is impossible.
-fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, bool)> {
+/// The rule that removes an effect that is physically impossible, or that other effects exclude.
+const CONTRADICTS: &str = "it contradicts other effects, or its own rows";
+
+/// The weakest effect whose size may be zero, whose onset may be anywhere, or that is physically impossible; with the rule that removes
+/// it.
+fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, &'static str)> {
     let resampled = &resampled.evenly();
     let nothing = nothing(study, judged, resampled);
     let study = &*study;
@@ -181,9 +184,6 @@ fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<
     let all = judged.members.iter().flat_map(names).map(|named| named.effect);
     let all: Vec<Effect> = all.collect();
     let accuracy = torque_constants::accuracy(study, &judged.named.set);
-    let row_times = study.data.motions.row_times();
-    let rows = study.table.rows_of(|recording| study.data.fitted[recording]);
-    let times: Vec<f64> = rows.into_iter().map(|row| row_times[row]).collect();
     let contradicted = |member: &judge::Member| {
         let named = name(study, resampled, member.candidate);
         // The correction of its sizes may make the effect impossible, for example by a negative level.
@@ -193,21 +193,40 @@ fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
             let kind = named.effect.kind().get();
-            interval("onset").is_some_and(|onset| is_anywhere(onset, &times))
-                || !kind.is_certain(&named.effect, &interval, accuracy)
-                || kind.is_contradicted(&named.effect, &all)
+            !kind.is_certain(&named.effect, &interval, accuracy) || kind.is_contradicted(&named.effect, &all)
         };
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };
-    let is_unclear = |member: &&judge::Member| {
-        if contradicted(member) || is_part_of_the_residual(study, judged, member) {
-            return true;
-        }
-        nothing.contains(&member.candidate)
+    let row_times = study.data.motions.row_times();
+    let sets_in_anywhere = |member: &judge::Member| {
+        let onset = |named: Named| named.parameters.get("onset").map(|parameter| parameter.ci95);
+        let acts_on = |&joint: &usize| member.shares[joint] > 0.0;
+        let joints: Vec<usize> = (0..study.data.motions.dof).filter(acts_on).collect();
+        let moves = |&row: &usize| joints.iter().any(|&joint| study.table.joints[joint].moving[row]);
+        let rows = study.table.rows_of(|recording| study.data.fitted[recording]);
+        let times = || -> Vec<f64> {
+            rows.iter()
+                .filter(|row| moves(row))
+                .map(|&row| row_times[row])
+                .collect()
+        };
+        let mut onsets = name(study, resampled, member.candidate).into_iter().filter_map(onset);
+        !study.always_acts(member.candidate) && onsets.any(|onset| is_anywhere(onset, &times()))
     };
-    let unclear = judged.members.iter().filter(is_unclear);
-    let weakest = unclear.min_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    Some((weakest.candidate, contradicted(weakest)))
+    let rule = |member: &judge::Member| {
+        if contradicted(member) {
+            Some(CONTRADICTS)
+        } else if sets_in_anywhere(member) {
+            Some("its onset may be at most of the rows")
+        } else if nothing.contains(&member.candidate) || is_part_of_the_residual(study, judged, member) {
+            Some("its interval contains the value without effect")
+        } else {
+            None
+        }
+    };
+    let unclear = judged.members.iter().filter_map(|member| Some((member, rule(member)?)));
+    let (weakest, rule) = unclear.min_by(|a, b| a.0.evidence.total_cmp(&b.0.evidence))?;
+    Some((weakest.candidate, rule))
 }
 
 /// The members whose size may be zero. A member is not listed if its evidence against the background that fits best without it is large,

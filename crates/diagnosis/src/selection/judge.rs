@@ -1,5 +1,6 @@
 //! Decides which of the selected candidates are named.
 
+use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
 use crate::data::statistics::{moments, rms};
@@ -100,9 +101,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         // form remains on its joint, or if it is much larger than the residual of the named effects there, because unmodelled forms
         // also represent constants.
         let candidates = &study.candidates;
-        let simple: Vec<usize> = (0..candidates.len())
-            .filter(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant)
-            .collect();
+        let mut simple = study.allowed();
+        simple.retain(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant);
         let with_all = problem.forward(kept.clone(), &simple);
         let with_forms: Vec<Option<usize>> = beside(&problem, &with_all, &unmodelled)
             .iter()
@@ -282,7 +282,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             Some(_) => study.thresholds.least_beyond,
             None => study.thresholds.least_evidence,
         };
-        // An effect on several joints need not stand out on all of them.
+        // An effect on several joints need not stand out on all of them, but for a contact.
         let stands_out = |joint: usize| {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {
@@ -308,8 +308,8 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 && share >= study.thresholds.beside_a_certain * others(true)
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
-        // A brief push is not distinguished from what the end of a gap does to all joints, but on the gap's own one.
-        let stands_out = if hypothesis(member).spec().may_be_in_one_recording {
+        // The end of a gap jolts all joints, most of all its own. A contact must stand out on the joint on which it is largest.
+        let stands_out = if hypothesis(member).is(&ExternalContact) {
             stands_out(at)
         } else {
             (0..dof).any(stands_out)

@@ -137,7 +137,10 @@ impl EffectKind for Backlash {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let halfgap = estimate.terms().first()?.sizes[0];
-        let halfgap = estimate.simulated(Systematic::OfForm, "halfgap", |drawn, size| halfgap * (drawn + size));
+        let halfgap = estimate.simulated(Systematic::OfForm, "halfgap", |drawn, size| {
+            // Beside effects that do not fit, the coefficient of a gap may be negative; the gap is not.
+            (halfgap * (drawn + size)).max(0.0)
+        });
         Some(Effect::of(&Self).on(estimate.joint_name()).with("halfgap", halfgap))
     }
 

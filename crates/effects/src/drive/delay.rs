@@ -63,7 +63,7 @@ impl EffectKind for ActuationDelay {
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let forms = |joint| {
-            [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, LONGEST_DELAY].map(|delay| {
+            [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, 0.027].map(|delay| {
                 let terms = vec![Term::on(&LATE, joint).sized([delay])];
                 Form::on(Turn::Late, joint, terms)
             })
@@ -84,7 +84,9 @@ impl EffectKind for ActuationDelay {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let delay = estimate.terms().first()?.sizes[0];
-        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| delay * (drawn + size));
+        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| {
+            (delay * (drawn + size)).max(0.0)
+        });
         Some(Effect::of(&Self).on(estimate.joint_name()).with("delay", delay))
     }
 

@@ -44,6 +44,11 @@ const UNITS: [Unit; 4] = [
     },
 ];
 
+/// Whether torques that are `factor` times the model's may be in a unit that is a power of ten of N m.
+pub fn may_be_decimal(factor: f64) -> bool {
+    UNITS.iter().any(|unit| NEAR_UNIT.contains(&(factor / unit.factor)))
+}
+
 /// The message on a wrong unit of the torques, if all joints that move have the same error, and the keys of a column map
 /// that correct it.
 pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {

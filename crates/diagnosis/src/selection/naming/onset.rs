@@ -95,8 +95,8 @@ impl Reader<'_> {
     }
 }
 
-/// Whether the interval of an onset (s) contains so many of the fitted rows, which have these `times`, that the effect does not set in
-/// within them.
+/// Whether the interval of an onset (s) contains so many of the rows on which the effect's joints move, which have these `times`, that it
+/// does not set in within them.
 pub fn is_anywhere([first, last]: [f64; 2], times: &[f64]) -> bool {
     let within = times.iter().filter(|time| (first..=last).contains(*time)).count();
     within as f64 > MOST_OF_AN_ONSET * times.len() as f64
