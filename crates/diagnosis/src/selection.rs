@@ -26,6 +26,7 @@ pub mod predict;
 pub mod rivals;
 pub mod special_forms;
 pub mod torque_constants;
+pub mod unclear;
 pub mod unmounted;
 pub mod without_moment;
 

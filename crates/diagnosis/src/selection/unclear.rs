@@ -1,0 +1,111 @@
+//! Effects that the final fit contradicts, or whose size or onset it leaves open.
+
+use effects::Effect;
+use torque::Corrected;
+
+use crate::search::study::Study;
+use crate::selection::bootstrap::Resampled;
+use crate::selection::judge::{self, Judged};
+use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
+use crate::selection::predict::{errors_with, structured};
+use crate::selection::torque_constants;
+use crate::thresholds::CLEAR_THOUGH_UNDETERMINED;
+
+/// The rule that removes an effect that is physically impossible, or that other effects exclude.
+pub const CONTRADICTS: &str = "it contradicts other effects, or its own rows";
+
+/// The weakest effect whose size may be zero, whose onset may be anywhere, or that is physically impossible; with the rule that removes
+/// it.
+pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, &'static str)> {
+    let resampled = &resampled.evenly();
+    let nothing = nothing(study, judged, resampled);
+    let study = &*study;
+    let names = |member: &judge::Member| name(study, resampled, member.candidate);
+    let all = judged.members.iter().flat_map(names).map(|named| named.effect);
+    let all: Vec<Effect> = all.collect();
+    let accuracy = torque_constants::accuracy(study, &judged.named.set);
+    let contradicted = |member: &judge::Member| {
+        let named = name(study, resampled, member.candidate);
+        // The correction of its sizes may make the effect impossible, for example by a negative level.
+        let is_impossible =
+            |named: &Named| Corrected::new(&study.data.arm, std::slice::from_ref(&named.effect)).is_err();
+        // The intervals of its parameters, or the other effects, exclude it.
+        let is_contradicted = |named: &Named| {
+            let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
+            let kind = named.effect.kind().get();
+            !kind.is_certain(&named.effect, &interval, accuracy) || kind.is_contradicted(&named.effect, &all)
+        };
+        named.iter().any(|named| is_impossible(named) || is_contradicted(named))
+    };
+    let row_times = study.data.motions.row_times();
+    let sets_in_anywhere = |member: &judge::Member| {
+        let onset = |named: Named| named.parameters.get("onset").map(|parameter| parameter.ci95);
+        let acts_on = |&joint: &usize| member.shares[joint] > 0.0;
+        let joints: Vec<usize> = (0..study.data.motions.dof).filter(acts_on).collect();
+        let moves = |&row: &usize| joints.iter().any(|&joint| study.table.joints[joint].moving[row]);
+        let rows = study.table.rows_of(|recording| study.data.fitted[recording]);
+        let times = || -> Vec<f64> {
+            rows.iter()
+                .filter(|row| moves(row))
+                .map(|&row| row_times[row])
+                .collect()
+        };
+        let mut onsets = name(study, resampled, member.candidate).into_iter().filter_map(onset);
+        !study.always_acts(member.candidate) && onsets.any(|onset| is_anywhere(onset, &times()))
+    };
+    let rule = |member: &judge::Member| {
+        if contradicted(member) {
+            Some(CONTRADICTS)
+        } else if sets_in_anywhere(member) {
+            Some("its onset may be at most of the rows")
+        } else if nothing.contains(&member.candidate) || is_part_of_the_residual(study, judged, member) {
+            Some("its interval contains the value without effect")
+        } else {
+            None
+        }
+    };
+    let unclear = judged.members.iter().filter_map(|member| Some((member, rule(member)?)));
+    let (weakest, rule) = unclear.min_by(|a, b| a.0.evidence.total_cmp(&b.0.evidence))?;
+    Some((weakest.candidate, rule))
+}
+
+/// The members whose size may be zero. A member is not listed if its evidence against the background that fits best without it is large,
+/// even if its size is undetermined. For example, wrong inertial parameters of the last links leave the mass of a payload undetermined
+/// while its moments are clear, and a drift relative to a low level of friction is as uncertain as that level.
+fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usize> {
+    let may_be = |study: &Study, member: usize| {
+        let named = name(study, resampled, member);
+        let first = named.first();
+        first.is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
+    };
+    let mut list = judged.named.set.clone();
+    list.retain(|&member| {
+        may_be(study, member)
+            && study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED
+    });
+    list
+}
+
+/// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual;
+/// for an effect on the whole arm, on every joint.
+fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
+        return false;
+    };
+    let is_part = |joint: usize| {
+        let fit = errors_with(&study.data, &study.table, &judged.named.fit, joint);
+        // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
+        let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
+        let residuals = structured(&fit)
+            .into_iter()
+            .chain(has_forms.then_some(fit.train_nrmse_augmented));
+        factor * residuals.fold(0.0, f64::max) > member.shares[joint]
+    };
+    match candidate.joint {
+        Some(joint) => is_part(joint),
+        None => (0..study.data.motions.dof)
+            .filter(|&joint| member.shares[joint] > 0.0)
+            .all(is_part),
+    }
+}
