@@ -58,6 +58,19 @@ fn no_file_is_over_long() {
     }
 }
 
+/// A page that a command wrote has the paths with which the command was given.
+#[test]
+fn pages_have_relative_paths_to_what_is_beside_the_repository() {
+    let root = crate::support::root();
+    let docs = std::fs::read_dir(root.join("docs")).expect("the folder can be read");
+    let pages = docs.flatten().map(|entry| entry.path());
+    let pages = pages.chain(["README.md", "ARCHITECTURE.md", "CHANGELOG.md"].map(|name| root.join(name)));
+    for page in pages.filter(|path| path.extension().is_some_and(|extension| extension == "md")) {
+        let text = read(&page).replace("../shared", "");
+        assert!(!text.contains("/shared/"), "{} has an absolute path", page.display());
+    }
+}
+
 #[test]
 fn the_architecture_page_names_the_crates_there_are() {
     let page = read(&crate::support::root().join("ARCHITECTURE.md"));
