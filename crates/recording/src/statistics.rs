@@ -50,6 +50,27 @@ pub fn deviation<T: Borrow<f64>>(values: impl Iterator<Item = T> + Clone) -> f64
     moments(values).1.sqrt()
 }
 
+/// A signal of which less than this part of its square is its own, beside others, is not distinguished from them.
+const LEAST_OF_ITS_OWN: f64 = 1e-9;
+
+/// Subtracts what `signal` explains of the others from the inner products `left`, which are those of `whole` without what the signals
+/// before it explain; returns its row before. `None`, and nothing is subtracted, if it hardly differs from the signals before it.
+pub fn eliminate<const N: usize>(left: &mut [[f64; N]; N], whole: &[[f64; N]; N], signal: usize) -> Option<[f64; N]> {
+    let row = left[signal];
+    let own = row[signal];
+    if own <= LEAST_OF_ITS_OWN * whole[signal][signal] || own <= 0.0 {
+        return None;
+    }
+    for (other, values) in left.iter_mut().enumerate() {
+        let share = row[other] / own;
+        values
+            .iter_mut()
+            .zip(row)
+            .for_each(|(value, row)| *value -= share * row);
+    }
+    Some(row)
+}
+
 /// The mean of the squares; zero for no values.
 pub fn mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     mean(values.into_iter().map(|value| value * value))

@@ -2,11 +2,11 @@
 
 use arm::{Arm, Workspace};
 use effects::Scales;
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::DMatrix;
 
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
-use crate::data::statistics::{deviation, mean, quantile_of_sorted};
+use crate::data::statistics::{deviation, eliminate, mean, quantile_of_sorted};
 use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
@@ -64,9 +64,6 @@ const SIGNALS: usize = 10;
 const LINKS: usize = SIGNALS - 3;
 const OWN: usize = SIGNALS - 2;
 const MEASURED: usize = SIGNALS - 1;
-/// A signal that differs from those before it by less than this part of its square is left out.
-const LEAST_OF_ITS_OWN: f64 = 1e-9;
-
 /// Signals of a joint on the rows of the training recordings.
 #[derive(Default)]
 struct Inertial([Vec<f64>; SIGNALS]);
@@ -100,28 +97,23 @@ impl Inertial {
     /// inertias that are not negative (N m or N).
     fn explained_by_acceleration(&self) -> f64 {
         let inner = |i: usize, k: usize| -> f64 { self.0[i].iter().zip(&self.0[k]).map(|(a, b)| a * b).sum() };
-        let whole = SMatrix::<f64, SIGNALS, SIGNALS>::from_fn(inner);
+        let whole: [[f64; SIGNALS]; SIGNALS] = std::array::from_fn(|i| std::array::from_fn(|k| inner(i, k)));
         let mut left = whole;
-        let eliminate = |left: &mut SMatrix<f64, SIGNALS, SIGNALS>, signal: usize| {
-            let own = left[(signal, signal)];
-            if own > LEAST_OF_ITS_OWN * whole[(signal, signal)] {
-                let (column, row) = (left.column(signal).into_owned(), left.row(signal).into_owned());
-                *left -= column * row / own;
-            }
-        };
-        (0..LINKS).for_each(|signal| eliminate(&mut left, signal));
-        let before = left[(MEASURED, MEASURED)];
+        for signal in 0..LINKS {
+            eliminate(&mut left, &whole, signal);
+        }
+        let before = left[MEASURED][MEASURED];
         // Either alone, and both.
         let sets: [&[usize]; 3] = [&[LINKS], &[OWN], &[LINKS, OWN]];
         let explained = sets.map(|set| {
             let mut rest = left;
             let mut is_positive = true;
             for &signal in set {
-                is_positive &= rest[(signal, MEASURED)] >= 0.0;
-                eliminate(&mut rest, signal);
+                is_positive &= rest[signal][MEASURED] >= 0.0;
+                eliminate(&mut rest, &whole, signal);
             }
             if is_positive {
-                before - rest[(MEASURED, MEASURED)]
+                before - rest[MEASURED][MEASURED]
             } else {
                 0.0
             }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use effects::{Detectability, Kind};
+use effects::{Detectability, Effect, Kind};
 use rayon::prelude::*;
 
 use crate::data::Data;
@@ -163,12 +163,17 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
                 if_none,
                 is_seen_below,
             } => {
+                let may_be_named = |size: f64| {
+                    let effect = Effect::of(kind.get()).with(key, size);
+                    kind.get().is_certain(&effect, &|_| None, 0.0)
+                };
                 // Sizes in ascending order.
                 let mut sizes: Vec<(f64, bool)> = of(&study.candidates, kind, joint)
                     .map(|candidate| {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
                         (size, is_seen(last, candidate, joint))
                     })
+                    .filter(|&(size, _)| may_be_named(size))
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
                 if is_seen_below {

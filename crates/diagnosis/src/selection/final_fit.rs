@@ -15,7 +15,7 @@ use crate::selection::judge::{self, Judged};
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
-use crate::selection::unclear::{CONTRADICTS, unclear};
+use crate::selection::unclear::{Unclear, unclear};
 use crate::selection::without_moment::without_moment;
 
 use crate::thresholds::{
@@ -49,11 +49,11 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
         }
         let resampled = resample(study, &judged.named);
         match unclear(study, judged, &resampled) {
-            Some((unclear, rule)) => {
-                if rule == CONTRADICTS {
+            Some((unclear, why)) => {
+                if why == Unclear::Contradicted {
                     study.refuse(unclear);
                 }
-                drop_name(study, judged, unclear, rule);
+                drop_name(study, judged, unclear, why.rule());
             }
             None => match without_moment(study, judged, &resampled) {
                 Some(payload) => {

@@ -282,7 +282,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             Some(_) => study.thresholds.least_beyond,
             None => study.thresholds.least_evidence,
         };
-        // An effect on several joints need not stand out on all of them, but for a contact.
+        // An effect on several joints need not stand out on all of them.
         let stands_out = |joint: usize| {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {

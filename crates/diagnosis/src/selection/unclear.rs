@@ -11,12 +11,30 @@ use crate::selection::predict::{errors_with, structured};
 use crate::selection::torque_constants;
 use crate::thresholds::CLEAR_THOUGH_UNDETERMINED;
 
-/// The rule that removes an effect that is physically impossible, or that other effects exclude.
-pub const CONTRADICTS: &str = "it contradicts other effects, or its own rows";
+/// Why an effect is removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unclear {
+    /// It is physically impossible, or other effects exclude it.
+    Contradicted,
+    /// Its onset may be anywhere.
+    Onset,
+    /// Its size may be zero, or it may be a part of the residual.
+    Size,
+}
 
-/// The weakest effect whose size may be zero, whose onset may be anywhere, or that is physically impossible; with the rule that removes
-/// it.
-pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, &'static str)> {
+impl Unclear {
+    /// The rule that removes the effect.
+    pub fn rule(self) -> &'static str {
+        match self {
+            Self::Contradicted => "it contradicts other effects, or its own rows",
+            Self::Onset => "its onset may be at most of the rows",
+            Self::Size => "its interval contains the value without effect",
+        }
+    }
+}
+
+/// The weakest effect that is unclear, and why.
+pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Option<(usize, Unclear)> {
     let resampled = &resampled.evenly();
     let nothing = nothing(study, judged, resampled);
     let study = &*study;
@@ -38,35 +56,37 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };
     let row_times = study.data.motions.row_times();
+    let rows = study.table.rows_of(|recording| study.data.fitted[recording]);
     let sets_in_anywhere = |member: &judge::Member| {
-        let onset = |named: Named| named.parameters.get("onset").map(|parameter| parameter.ci95);
+        if study.always_acts(member.candidate) {
+            return false;
+        }
         let acts_on = |&joint: &usize| member.shares[joint] > 0.0;
         let joints: Vec<usize> = (0..study.data.motions.dof).filter(acts_on).collect();
-        let moves = |&row: &usize| joints.iter().any(|&joint| study.table.joints[joint].moving[row]);
-        let rows = study.table.rows_of(|recording| study.data.fitted[recording]);
-        let times = || -> Vec<f64> {
-            rows.iter()
-                .filter(|row| moves(row))
-                .map(|&row| row_times[row])
-                .collect()
-        };
+        let moves = |row: usize| joints.iter().any(|&joint| study.table.joints[joint].moving[row]);
+        let times: Vec<f64> = rows
+            .iter()
+            .filter(|&&row| moves(row))
+            .map(|&row| row_times[row])
+            .collect();
+        let onset = |named: Named| named.parameters.get("onset").map(|parameter| parameter.ci95);
         let mut onsets = name(study, resampled, member.candidate).into_iter().filter_map(onset);
-        !study.always_acts(member.candidate) && onsets.any(|onset| is_anywhere(onset, &times()))
+        onsets.any(|onset| is_anywhere(onset, &times))
     };
-    let rule = |member: &judge::Member| {
+    let why = |member: &judge::Member| {
         if contradicted(member) {
-            Some(CONTRADICTS)
+            Some(Unclear::Contradicted)
         } else if sets_in_anywhere(member) {
-            Some("its onset may be at most of the rows")
+            Some(Unclear::Onset)
         } else if nothing.contains(&member.candidate) || is_part_of_the_residual(study, judged, member) {
-            Some("its interval contains the value without effect")
+            Some(Unclear::Size)
         } else {
             None
         }
     };
-    let unclear = judged.members.iter().filter_map(|member| Some((member, rule(member)?)));
-    let (weakest, rule) = unclear.min_by(|a, b| a.0.evidence.total_cmp(&b.0.evidence))?;
-    Some((weakest.candidate, rule))
+    let unclear = judged.members.iter().filter_map(|member| Some((member, why(member)?)));
+    let (weakest, why) = unclear.min_by(|a, b| a.0.evidence.total_cmp(&b.0.evidence))?;
+    Some((weakest.candidate, why))
 }
 
 /// The members whose size may be zero. A member is not listed if its evidence against the background that fits best without it is large,

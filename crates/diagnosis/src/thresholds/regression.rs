@@ -85,6 +85,7 @@ pub const LEAST_BODY_MASS: f64 = 0.05;
 /// Source: first background; a pseudo-inertia must be positive definite (Wensing, Kim and Slotine 2018).
 pub const LEAST_BODY_LEFT: f64 = 0.02;
 /// The least part of a body's pseudo-inertia, in any direction, that a step of the fit towards other bodies leaves of it.
+/// Interior-point methods limit their steps in the same way.
 pub const LEAST_OF_STEP: f64 = 0.2;
 /// The URDF may be wrong in a single direction by this multiple of the background's strength, which is a mean over all
 /// links and directions: centres of mass more than moments of inertia, one link more than another. The coefficient of a spring

@@ -93,9 +93,11 @@ pub const MOST_LAST: usize = 3;
 pub const PAYLOAD_JOINTS: usize = 2;
 /// The number of times that the prior of the links is expanded about the fitted bodies.
 pub const MOST_BODIES: usize = 2;
-/// The largest number of further expansions, until the fitted bodies are those about which the prior is expanded.
+/// The largest number of further expansions, until the fitted bodies are those about which the prior is expanded. Source:
+/// five simulated cases, in which two to eight suffice.
 pub const MOST_BODY_STEPS: usize = 20;
 /// A step of the bodies that is shorter than this in the metric of pseudo-inertias, relative to the prior's strength, is the last.
+/// Source: as for [`MOST_BODY_STEPS`]; the last step changes the score by less than 0.1 nats.
 pub const LAST_BODY_STEP: f64 = 0.01;
 /// The number of the most promising candidates that are fitted in full each round. Source: first diagnosis.
 pub const FITTED_AT_ONCE: usize = 8;

@@ -1,13 +1,11 @@
 //! The fit of a recording's torques by the URDF's model with corrected columns.
 
 use arm::Arm;
+use recording::statistics::eliminate;
 
 use super::correction::{Correction, JointReading};
 use super::smooth::Smooth;
 use super::thresholds::{EXPLAINED_BY_MODEL, LEAST_RESIDUAL, NEEDS_MODEL};
-
-/// The variance of a signal beside others, relative to its whole variance, below which it is not distinguished from them.
-const LEAST_OF_ITS_OWN: f64 = 1e-9;
 
 /// The fit of measured torques by the model's, with dry and viscous friction and an offset.
 pub struct Fit {
@@ -156,19 +154,8 @@ impl Products {
         let mut left = self.centred;
         let mut factor = 0.0;
         for &signal in signals.iter().rev() {
-            let row = left[signal];
-            let own = row[signal];
-            factor = 0.0;
-            if own > LEAST_OF_ITS_OWN * self.centred[signal][signal] && own > 0.0 {
-                factor = row[MEASURED] / own;
-                for (other, values) in left.iter_mut().enumerate() {
-                    let share = row[other] / own;
-                    values
-                        .iter_mut()
-                        .zip(row)
-                        .for_each(|(value, row)| *value -= share * row);
-                }
-            }
+            let row = eliminate(&mut left, &self.centred, signal);
+            factor = row.map_or(0.0, |row| row[MEASURED] / row[signal]);
         }
         (left[MEASURED][MEASURED].max(0.0) / total, factor)
     }
