@@ -52,10 +52,17 @@ pub static ACCELERATION: Law = Law {
     ..Law::PLAIN
 };
 
-/// The rigid torque of the joint.
+/// The rigid torque of the joint. Since an onset it is the joint's whole torque, with the rest that an earlier fit found: what the
+/// drive adds is then known from the time before.
 pub static RIGID: Law = Law {
     name: "rigid",
-    column: |_, joint, motion| Some(motion.rigid.tau[joint].clone()),
+    column: |term, joint, motion| {
+        let mut torque = motion.rigid.tau[joint].clone();
+        if let (Some(_), Some(rest)) = (term.onset(), motion.rigid.rest.get(joint)) {
+            torque.iter_mut().zip(rest).for_each(|(sum, rest)| *sum += rest);
+        }
+        Some(torque)
+    },
     needs_model: true,
     ..Law::PLAIN
 };

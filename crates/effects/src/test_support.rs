@@ -64,7 +64,7 @@ fn derivative(change: &dyn Fn(f64, &mut [[f64; 2]; 3]) -> Arm, tick: usize) -> [
 }
 
 /// Calls `visit` with the motion of the test's arm and the model along it.
-fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
+pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
     let arm = arm();
     let nominal = arm.inertial_parameters();
     let tau = signals(|tick| torque(&arm, state(tick)));
@@ -169,6 +169,7 @@ fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
         rigid: Rigid {
             tau: &tau,
             rotors: &[],
+            rest: &[],
             links: &links,
             payload: &payload,
             fixed_bodies: &[],

@@ -15,6 +15,8 @@ pub struct Rigid {
     pub tau: Vec<Vec<f64>>,
     /// The rotor inertias that τ and the mass matrix contain, which are known ones (kg m² or kg).
     pub rotors: Vec<f64>,
+    /// The torque of the drives that τ does not contain, as an earlier fit found it (N m or N); empty without one.
+    pub rest: Vec<Vec<f64>>,
     /// Each link's share of τ: `[joint][link]`.
     pub links: Vec<Vec<Vec<f64>>>,
     /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`.
@@ -61,6 +63,7 @@ impl Rigid {
             rigid: effects::Rigid {
                 tau: &self.tau,
                 rotors: &self.rotors,
+                rest: &self.rest,
                 links: &self.links,
                 payload: &self.payload,
                 fixed_bodies: &self.fixed_bodies,
@@ -112,6 +115,7 @@ impl Rigid {
         let mut rigid = Self {
             tau: (0..n).map(|_| zeros()).collect(),
             rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
+            rest: Vec::new(),
             links: square(),
             payload: (0..n).map(|_| (0..10).map(|_| zeros()).collect()).collect(),
             fixed_bodies: (0..n).map(|_| bodies.iter().map(|_| zeros()).collect()).collect(),

@@ -66,8 +66,8 @@ pub struct Study {
     pub trace: Trace,
     /// The inner products of the present table.
     formed: Formed,
-    /// Hypotheses that the final fit refused; they are not searched again.
-    refused: Vec<(Hypothesis, Option<usize>)>,
+    /// Hypotheses that the final fit refused, and whether they always act; they are not searched again.
+    refused: Vec<(Hypothesis, Option<usize>, bool)>,
     /// The evidence, by joint, for the name of a constant torque that always acts, if the differences between recordings decide whether
     /// it is an offset or asymmetric friction (nats).
     pub directions: BTreeMap<usize, f64>,

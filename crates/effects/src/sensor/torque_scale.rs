@@ -105,7 +105,7 @@ impl EffectKind for TorqueScale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::{column, machine};
+    use crate::test_support::{along, column, machine};
 
     #[test]
     fn a_scale_within_the_accuracy_of_torque_constants_is_not_certain() {
@@ -126,5 +126,23 @@ mod tests {
         assert_eq!(machine(&effect).factors[0].factor, 1.5);
         let (rigid, _) = column(&Term::on(&RIGID, 0), 0);
         assert!(rigid.iter().any(|torque| *torque != 0.0));
+    }
+
+    /// A factor that sets in multiplies friction, too, and the fit knows the friction from the time before.
+    #[test]
+    fn since_an_onset_its_column_is_the_whole_torque() {
+        along(|motion| {
+            let rest = vec![vec![3.0; motion.ticks()]; 2];
+            let mut motion = *motion;
+            motion.rigid.rest = &rest;
+            let onset = motion.time(motion.ticks() / 2);
+            let column = Term::on(&RIGID, 0).since(onset).column(0, &motion).unwrap_or_default();
+            for (tick, torque) in column.into_iter().enumerate() {
+                let whole = motion.rigid.tau[0][tick] + 3.0;
+                assert_eq!(torque, if motion.time(tick) < onset { 0.0 } else { whole }, "at tick {tick}");
+            }
+            let always = Term::on(&RIGID, 0).column(0, &motion);
+            assert_eq!(always.as_ref(), Some(&motion.rigid.tau[0]));
+        });
     }
 }

@@ -6,13 +6,16 @@ use rayon::prelude::*;
 use super::about::inertial_changes;
 use super::{About, Study};
 use crate::data::Data;
+use crate::data::motion::Chunk;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::rms;
 use crate::regression::background::Prior;
 use crate::regression::bodies::PER_LINK;
+use crate::regression::columns::values;
 use crate::regression::fit::{Fit, Products};
 use crate::regression::strengths::Strengths;
 use crate::regression::table::{Moving, Table};
+use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Selection;
 use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SIMULATED_ANEW};
 
@@ -151,7 +154,7 @@ impl Study {
                 rigid
             })
             .collect();
-        let before = std::mem::replace(&mut self.data.rigid, rigid);
+        let before = self.with_rest_of(fit, rigid);
         for joint in 0..self.data.motions.dof {
             let before = || before.iter().map(|rigid| rigid.tau[joint].clone()).collect();
             let along = self.simulated_along[joint].take().unwrap_or_else(before);
@@ -173,6 +176,30 @@ impl Study {
             self.moving,
         );
         Some(set)
+    }
+
+    /// Replaces the rigid model by `rigid`, to which the torques of the drives in `fit` are added; returns the one before.
+    fn with_rest_of(&mut self, fit: &Fit, mut rigid: Vec<Rigid>) -> Vec<Rigid> {
+        let data = &self.data;
+        let of_drives: Vec<(Term, f64)> = fit
+            .columns
+            .iter()
+            .zip(&fit.coefficients)
+            .map(|(&column, &value)| (self.table.terms[column], value))
+            .filter(|(term, _)| !term.is_dynamic() && term.onset().is_none())
+            .collect();
+        let rest = |chunk: &Chunk, rigid: &Rigid, joint: usize| {
+            let mut sum = vec![0.0; chunk.ticks()];
+            for &(term, value) in of_drives.iter().filter(|(term, _)| term.joint() == Some(joint)) {
+                let column = values(term, joint, chunk, rigid, &data.scales).unwrap_or_default();
+                sum.iter_mut().zip(column).for_each(|(sum, x)| *sum += value * x);
+            }
+            sum
+        };
+        rigid.par_iter_mut().zip(&data.motions.chunks).for_each(|(rigid, chunk)| {
+            rigid.rest = (0..data.motions.dof).map(|joint| rest(chunk, rigid, joint)).collect();
+        });
+        std::mem::replace(&mut self.data.rigid, rigid)
     }
 
     /// Whether the torque of the arm on `joint` is nearly the one along which its springs and gaps were simulated: `[chunk][tick]` (N m
@@ -215,10 +242,16 @@ impl Study {
         (set.iter().map(|&number| numbers[number]).collect(), terms)
     }
 
-    /// Refuses the hypothesis of `candidate` on its joint.
+    /// Refuses the hypothesis of `candidate` on its joint. A torque constant within the usual tolerance says nothing against one that
+    /// changes at some time, and conversely.
     pub fn refuse(&mut self, candidate: usize) {
-        let refused = &self.candidates[candidate];
-        self.refused.push((refused.hypothesis, refused.joint));
+        self.refused.push(self.claim(candidate));
+    }
+
+    /// What `candidate` claims: a hypothesis on a joint, and whether it always acts.
+    fn claim(&self, candidate: usize) -> (Hypothesis, Option<usize>, bool) {
+        let Candidate { hypothesis, joint, .. } = self.candidates[candidate];
+        (hypothesis, joint, self.always_acts(candidate))
     }
 
     /// Gives up the name of `candidate`, because wrong inertial parameters explain nearly as much.
@@ -237,10 +270,7 @@ impl Study {
 
     /// The candidates that may be taken.
     pub fn allowed(&self) -> Vec<usize> {
-        let is_allowed = |&c: &usize| {
-            let candidate = &self.candidates[c];
-            !self.refused.contains(&(candidate.hypothesis, candidate.joint))
-        };
+        let is_allowed = |&c: &usize| !self.refused.contains(&self.claim(c));
         (0..self.candidates.len()).filter(is_allowed).collect()
     }
 
