@@ -2,15 +2,12 @@
 
 use arm::Arm;
 
-use crate::data::Data;
 use crate::data::input::Input;
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnosisError;
-use crate::findings::conclusion::Conclusion;
+use crate::look::Look;
 use crate::next;
 use crate::options::{Options, Step};
-use crate::search::study::Study;
-use crate::selection::FinalFit;
 use crate::thresholds::{CUTOFF, LARGEST_CUTOFF, LEAST_WIDTHS};
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
@@ -26,12 +23,8 @@ pub fn diagnose(
     progress: &dyn Fn(Step<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
     check(arm, inputs, options.cutoff.unwrap_or(CUTOFF))?;
-    progress(Step::new(0.08, "filtering, rigid-body torques"));
-    let data = Data::new(arm, inputs, options)?;
-    let study = Study::new(data, options).with_own_load(options);
-    let last = FinalFit::new(study, options, progress)?;
-    progress(Step::new(0.78, "alternatives of the findings"));
-    let conclusion = Conclusion::new(&last, inputs, options);
+    let first = Look::new(arm, inputs, options, progress)?;
+    let Look { last, conclusion } = first.or_slower(arm, inputs, options, progress)?;
     let next = if options.next && conclusion.not_enough_data.is_empty() {
         progress(Step::new(0.8, "next experiment"));
         Some(next::propose(&last, &conclusion, arm, &options.known)?)

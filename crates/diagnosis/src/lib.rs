@@ -26,6 +26,7 @@ mod error;
 mod excitation;
 mod findings;
 mod lanes;
+mod look;
 mod next;
 mod options;
 mod regression;

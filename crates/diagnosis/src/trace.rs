@@ -68,6 +68,16 @@ impl Trace {
         );
     }
 
+    /// Begins with the decisions of an earlier search.
+    pub fn follow(&self, earlier: &Self) {
+        let before = earlier
+            .0
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .clone();
+        *self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = before;
+    }
+
     /// Returns and removes all decisions.
     pub fn take(&self) -> Vec<Decision> {
         std::mem::take(&mut self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner))

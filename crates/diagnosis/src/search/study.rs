@@ -19,6 +19,7 @@ use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::own_load::OwnLoad;
 use crate::search::problem::Problem;
+use crate::search::scope::Scope;
 use crate::thresholds::{LEAST_FOR_DYNAMICS, Thresholds};
 use crate::trace::Trace;
 
@@ -62,6 +63,8 @@ pub struct Study {
     pub thresholds: Thresholds,
     /// A load at the tip that only some of the recordings have.
     pub own_load: Option<OwnLoad>,
+    /// What may be named, if another search preceded; `None` allows everything.
+    pub scope: Option<Scope>,
     /// The record of decisions.
     pub trace: Trace,
     /// The inner products of the present table.
@@ -195,6 +198,7 @@ impl Study {
             thresholds,
             prior,
             own_load: None,
+            scope: None,
             trace: Trace::default(),
             formed: Formed::default(),
             refused: Vec::new(),

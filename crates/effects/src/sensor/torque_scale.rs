@@ -139,7 +139,11 @@ mod tests {
             let column = Term::on(&RIGID, 0).since(onset).column(0, &motion).unwrap_or_default();
             for (tick, torque) in column.into_iter().enumerate() {
                 let whole = motion.rigid.tau[0][tick] + 3.0;
-                assert_eq!(torque, if motion.time(tick) < onset { 0.0 } else { whole }, "at tick {tick}");
+                assert_eq!(
+                    torque,
+                    if motion.time(tick) < onset { 0.0 } else { whole },
+                    "at tick {tick}"
+                );
             }
             let always = Term::on(&RIGID, 0).column(0, &motion);
             assert_eq!(always.as_ref(), Some(&motion.rigid.tau[0]));

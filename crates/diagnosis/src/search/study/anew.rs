@@ -196,9 +196,12 @@ impl Study {
             }
             sum
         };
-        rigid.par_iter_mut().zip(&data.motions.chunks).for_each(|(rigid, chunk)| {
-            rigid.rest = (0..data.motions.dof).map(|joint| rest(chunk, rigid, joint)).collect();
-        });
+        rigid
+            .par_iter_mut()
+            .zip(&data.motions.chunks)
+            .for_each(|(rigid, chunk)| {
+                rigid.rest = (0..data.motions.dof).map(|joint| rest(chunk, rigid, joint)).collect();
+            });
         std::mem::replace(&mut self.data.rigid, rigid)
     }
 
@@ -270,7 +273,10 @@ impl Study {
 
     /// The candidates that may be taken.
     pub fn allowed(&self) -> Vec<usize> {
-        let is_allowed = |&c: &usize| !self.refused.contains(&self.claim(c));
+        let is_allowed = |&c: &usize| {
+            let scope = self.scope.as_ref();
+            !self.refused.contains(&self.claim(c)) && scope.is_none_or(|scope| scope.contains(&self.candidates[c]))
+        };
         (0..self.candidates.len()).filter(is_allowed).collect()
     }
 
