@@ -15,6 +15,8 @@ pub enum Systematic {
     OfForm,
     /// The usual error and that of the links' inertias in the URDF, for a parameter that is proportional to them.
     OfArm,
+    /// The usual error and that of the links' inertial parameters in the URDF, for a body beside them.
+    OfLinks,
     /// As [`Self::OfArm`], for a parameter that the recordings only bound from above: the interval begins at zero.
     FromAbove,
 }

@@ -102,6 +102,7 @@ impl Estimate for Reader<'_> {
         let systematic = match systematic {
             Systematic::Usual => SYSTEMATIC,
             Systematic::OfForm => OF_FORM,
+            Systematic::OfLinks => SYSTEMATIC + OF_ARM * self.links_wrong_by(),
             Systematic::OfArm | Systematic::FromAbove => OF_FORM + OF_ARM * self.links_wrong_by(),
         };
         // A mass is never known more accurately than the torque constants.

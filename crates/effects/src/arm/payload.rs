@@ -5,7 +5,7 @@ use ::arm::{Arm, Inertia, Matrix3, Vector3};
 use crate::fitted::moving_mass;
 use crate::{
     Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter,
-    Place, Quantity, Range, Scope, SetsIn, Shape, Spec, Term,
+    Place, Quantity, Range, Scope, SetsIn, Shape, Spec, Systematic, Term,
 };
 
 /// A body fixed to the tool.
@@ -194,10 +194,13 @@ impl EffectKind for Payload {
             estimate.place(terms.iter().position(of)?)
         });
         let read = |draw: &[f64]| places.map(|place| place.map_or(0.0, |place| draw[place]));
-        let mass = estimate.note("mass", |draw| read(draw)[0]);
+        // Wrong masses of the links are the same before a payload is picked up.
+        let always = terms.iter().all(|term| term.onset().is_none());
+        let systematic = if always { Systematic::OfLinks } else { Systematic::Usual };
+        let mass = estimate.note_within(systematic, "mass", &|draw| read(draw)[0]);
         let mut com = [0.0; 3];
         for (k, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
-            com[k] = estimate.note(key, |draw| {
+            com[k] = estimate.note_within(systematic, key, &|draw| {
                 let parameters = read(draw);
                 parameters[1 + k] / parameters[0]
             });
