@@ -38,6 +38,7 @@ impl Diagnosis {
             schema: SCHEMA,
             robot: robot.to_owned(),
             recordings,
+            cutoff: None,
             verdict: Verdict::UnitsFirst,
             doubts,
             warnings: Vec::new(),

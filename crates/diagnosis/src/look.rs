@@ -1,13 +1,12 @@
 //! A look at the recordings through one filter, and a second look through a slower one where the first leaves residuals unexplained.
 //!
-//! What follows an impact in a gear, or the end of a spring, is faster than any model of it is right; the slower part of the same
-//! torque is not. An effect that a quick filter hides in such a residual stands out with a slower one.
+//! No model is right about the fast torque after an impact in a gear, or at the end of a spring. It hides the slower part of the same
+//! torque, which a model does explain, and which stands out with a slower filter.
 
 use arm::Arm;
 
 use crate::data::Data;
 use crate::data::input::Input;
-use crate::data::statistics::median;
 use crate::diagnose::check;
 use crate::error::DiagnosisError;
 use crate::findings::conclusion::Conclusion;
@@ -19,6 +18,7 @@ use crate::selection::FinalFit;
 use crate::thresholds::{
     CERTAIN_ENOUGH, LEAST_CUTOFF_PERIODS, LEAST_FOR_DYNAMICS, OF_THE_UNEXPLAINED, SLOWER_FILTER, WORTH_SLOWING,
 };
+use crate::trace::{Action, Trace};
 
 /// The final fit with one filter, and the conclusions.
 pub struct Look {
@@ -39,23 +39,22 @@ impl Look {
         options: &Options,
         progress: &dyn Fn(Step<'_>),
     ) -> Result<Self, DiagnosisError> {
-        Self::within(arm, inputs, options, None, progress)
+        Self::within(arm, inputs, options, (None, Trace::default()), progress)
     }
 
+    /// A look that may name what is in `scope` (`None`: everything) and continues a trace.
     fn within(
         arm: &Arm,
         inputs: &[Input<'_>],
         options: &Options,
-        after: Option<(&Self, Option<Scope>)>,
+        (scope, trace): (Option<Scope>, Trace),
         progress: &dyn Fn(Step<'_>),
     ) -> Result<Self, DiagnosisError> {
         progress(Step::new(0.08, "filtering, rigid-body torques"));
         let data = Data::new(arm, inputs, options)?;
         let mut study = Study::new(data, options).with_own_load(options);
-        if let Some((earlier, scope)) = after {
-            study.trace.follow(&earlier.last.study.trace);
-            study.scope = scope;
-        }
+        study.scope = scope;
+        study.trace = trace;
         let last = FinalFit::new(study, options, progress)?;
         progress(Step::new(0.78, "alternatives of the findings"));
         let conclusion = Conclusion::new(&last, inputs, options);
@@ -68,7 +67,7 @@ impl Look {
     /// # Errors
     /// [`DiagnosisError`], if there is nothing to fit.
     pub fn or_slower(
-        self,
+        mut self,
         arm: &Arm,
         inputs: &[Input<'_>],
         options: &Options,
@@ -91,23 +90,28 @@ impl Look {
             cutoff: Some(slower),
             ..options.clone()
         };
+        let again = |step: Step<'_>| {
+            let doing = format!("slower filter: {}", step.doing);
+            progress(Step::new(0.78 + 0.02 * step.done, &doing));
+        };
         // First only what is new on the open joints. An effect on another joint may be a part of the explanation; it is believed if
         // nothing stays unexplained with it.
         for scope in [Some(self.scope()), None] {
             let is_free = scope.is_none();
-            let mut second = Self::within(arm, inputs, &options, Some((&self, scope)), progress)?;
-            if !second.outcome().explains_more_than(&self.outcome())
-                || is_free && !second.conclusion.unexplained.is_empty()
-            {
-                continue;
+            let trace = std::mem::take(&mut self.last.study.trace);
+            note_filter(&trace, slower, "residuals stay unexplained");
+            let mut second = Self::within(arm, inputs, &options, (scope, trace), &again)?;
+            let explains = !is_free || second.conclusion.unexplained.is_empty();
+            let reason = second.outcome().reason_beside(&self.outcome()).filter(|_| explains);
+            if let Some(reason) = reason {
+                second.last.study.data.motions.remarks.push(format!(
+                    "the filter's cut-off was lowered from {before:.1} Hz to {slower:.1} Hz: with it, {reason} (--cutoff {before:.1} \
+                     gives the result before)"
+                ));
+                return Ok(second);
             }
-            let open: Vec<&str> = self.open().collect();
-            second.last.study.data.motions.remarks.push(format!(
-                "the filter's cut-off was lowered from {before:.1} Hz to {slower:.1} Hz: with {before:.1} Hz, residuals of {} stay \
-                 unexplained (--cutoff {before:.1} shows them)",
-                open.join(", ")
-            ));
-            return Ok(second);
+            self.last.study.trace = second.last.study.trace;
+            note_filter(&self.last.study.trace, before, "the slower filter explains no more");
         }
         Ok(self)
     }
@@ -115,10 +119,9 @@ impl Look {
     /// The slower cut-off (Hz): a part of this one, sufficient for delays, springs and gaps, and for the motion.
     fn slower(&self) -> f64 {
         let motions = &self.last.study.data.motions;
-        let tempo = median(motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect());
         (SLOWER_FILTER * motions.cutoff)
             .max(LEAST_FOR_DYNAMICS)
-            .max(LEAST_CUTOFF_PERIODS * tempo)
+            .max(LEAST_CUTOFF_PERIODS * motions.usual_tempo())
     }
 
     /// The joints whose residual is unexplained.
@@ -157,35 +160,54 @@ impl Outcome<'_> {
         self.unexplained.iter().any(|open| open.joint == joint)
     }
 
-    /// Whether fewer residuals are unexplained than in `first`, and no others, and a name that `first` does not give is certain and
-    /// large enough to be the reason.
-    fn explains_more_than(&self, first: &Self) -> bool {
-        let closed: Vec<&Unexplained> = first
-            .unexplained
+    /// The new name that is the reason for residuals that `first` leaves unexplained and this look does not, as a clause; `None` if there
+    /// is none, or if this look explains less elsewhere.
+    ///
+    /// The name must be certain, and as large as a part of the largest of these residuals. No other joint may be unexplained, and the
+    /// certain names of `first` on joints that it explains must stay.
+    fn reason_beside(&self, first: &Self) -> Option<String> {
+        let closed = || first.unexplained.iter().filter(|open| !self.is_open(&open.joint));
+        let largest = closed().max_by(|a, b| a.share.total_cmp(&b.share))?;
+        let share = |finding: &Finding| finding.share_by_joint.get(&largest.joint).copied().unwrap_or(0.0);
+        let mut new = self
+            .findings
             .iter()
-            .filter(|open| !self.is_open(&open.joint))
-            .collect();
-        let is_new = |finding: &Finding| {
-            let is_same = |known: &&Finding| known.effect == finding.effect && known.joint == finding.joint;
-            !first.findings.iter().any(is_same)
-        };
-        let is_certain = |finding: &Finding| {
-            finding
-                .probability
-                .is_some_and(|probability| probability >= CERTAIN_ENOUGH)
-        };
-        let is_the_reason = |finding: &Finding| {
-            let share = |joint: &str| finding.share_by_joint.get(joint).copied().unwrap_or(0.0);
-            closed
-                .iter()
-                .any(|open| share(&open.joint) >= OF_THE_UNEXPLAINED * open.share)
-        };
-        self.unexplained.iter().all(|open| first.is_open(&open.joint))
-            && self.findings.iter().any(|finding| {
-                let is_baseline = finding.as_effect.spec().is_baseline;
-                !is_baseline && is_new(finding) && is_certain(finding) && is_the_reason(finding)
-            })
+            .filter(|finding| is_certain(finding) && !first.names(finding));
+        let reason = new.find(|finding| share(finding) >= OF_THE_UNEXPLAINED * largest.share)?;
+        let is_elsewhere = |finding: &&&Finding| !finding.joint.as_ref().is_some_and(|joint| first.is_open(joint));
+        let mut kept = first
+            .findings
+            .iter()
+            .filter(|finding| is_certain(finding))
+            .filter(is_elsewhere);
+        let others_are_open = self.unexplained.iter().any(|open| !first.is_open(&open.joint));
+        if others_are_open || !kept.all(|finding| self.names(finding)) {
+            return None;
+        }
+        let joints: Vec<&str> = closed().map(|open| open.joint.as_str()).collect();
+        let (title, on) = (reason.as_effect.spec().title, reason.joint.as_deref());
+        let on = on.map_or(String::new(), |joint| format!(" of {joint}"));
+        Some(format!("{title}{on} explains residuals of {}", joints.join(", ")))
     }
+
+    /// Whether a finding of the same name is among them.
+    fn names(&self, finding: &Finding) -> bool {
+        let mut findings = self.findings.iter();
+        findings.any(|known| known.effect == finding.effect && known.joint == finding.joint)
+    }
+}
+
+/// Whether a finding has a certain name, and is no baseline effect.
+fn is_certain(finding: &Finding) -> bool {
+    !finding.as_effect.spec().is_baseline
+        && finding
+            .probability
+            .is_some_and(|probability| probability >= CERTAIN_ENOUGH)
+}
+
+/// Notes that the search goes on with the filter at `cutoff` (Hz).
+fn note_filter(trace: &Trace, cutoff: f64, rule: &'static str) {
+    trace.step([(Action::Filter, format!("{cutoff:.1} Hz"), None, rule, 0.0)]);
 }
 
 #[cfg(test)]
@@ -207,7 +229,7 @@ mod tests {
     fn open(joint: &str) -> Unexplained {
         Unexplained {
             joint: joint.to_owned(),
-            share: 0.4,
+            share: if joint == "elbow" { 0.4 } else { 0.2 },
             depends_on: Vec::new(),
             time: Vec::new(),
             next: String::new(),
@@ -215,17 +237,19 @@ mod tests {
     }
 
     fn is_taken(findings: &[Finding], unexplained: &[Unexplained]) -> bool {
-        let first = [open("elbow"), open("wrist")];
-        let friction = named(&CoulombFriction, 0.985, 0.1);
+        is_taken_after(&[named(&CoulombFriction, 0.985, 0.1)], findings, unexplained)
+    }
+
+    fn is_taken_after(first: &[Finding], findings: &[Finding], unexplained: &[Unexplained]) -> bool {
         let first = Outcome {
-            findings: vec![&friction],
-            unexplained: &first,
+            findings: first.iter().collect(),
+            unexplained: &[open("elbow"), open("wrist")],
         };
         let second = Outcome {
             findings: findings.iter().collect(),
             unexplained,
         };
-        second.explains_more_than(&first)
+        second.reason_beside(&first).is_some()
     }
 
     #[test]
@@ -255,5 +279,32 @@ mod tests {
         assert!(!is_taken(&gap, &[open("elbow"), open("wrist")]), "as much");
         assert!(!is_taken(&gap, &[open("shoulder")]), "another joint");
         assert!(is_taken(&gap, &[]));
+    }
+
+    #[test]
+    fn a_second_look_keeps_the_certain_names_of_explained_joints() {
+        let gap = named(&Backlash, 0.985, 0.2);
+        let on = |joint: &str| Finding {
+            joint: Some(joint.to_owned()),
+            ..gap.clone()
+        };
+        let both = [gap.clone(), on("shoulder")];
+        assert!(is_taken_after(&[on("shoulder")], &both, &[]));
+        assert!(
+            !is_taken_after(&[on("shoulder")], std::slice::from_ref(&gap), &[]),
+            "lost"
+        );
+        assert!(
+            is_taken_after(&[on("wrist")], &[gap], &[]),
+            "of a joint that was unexplained"
+        );
+    }
+
+    #[test]
+    fn the_note_says_what_explains_which_residuals() {
+        let (gap, open) = (named(&Backlash, 0.985, 0.2), [open("elbow"), open("wrist")]);
+        let of = |findings, unexplained| Outcome { findings, unexplained };
+        let reason = of(vec![&gap], &open[1..]).reason_beside(&of(Vec::new(), &open));
+        assert_eq!(reason.as_deref(), Some("backlash of elbow explains residuals of elbow"));
     }
 }

@@ -39,6 +39,9 @@ pub struct Report {
     pub robot: String,
     /// The recordings, with the names that the user gave.
     pub recordings: RecordingNames,
+    /// The half-power frequency of the low-pass filter through which the recordings were compared (Hz).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cutoff: Option<f64>,
     /// The verdict in one word.
     pub verdict: Verdict,
     /// Doubts about the units, signs, order or zeros of the recordings, with their remedies. No effect is searched before

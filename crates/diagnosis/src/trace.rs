@@ -15,6 +15,8 @@ pub enum Action {
     Dropped,
     /// The background became stronger or weaker.
     Background,
+    /// The search begins again with another filter, or its result is kept or not.
+    Filter,
 }
 
 impl fmt::Display for Action {
@@ -24,6 +26,7 @@ impl fmt::Display for Action {
             Self::Taken => "taken",
             Self::Dropped => "dropped",
             Self::Background => "background",
+            Self::Filter => "filter",
         })
     }
 }
@@ -35,7 +38,7 @@ pub struct Decision {
     pub step: usize,
     /// The decision.
     pub action: Action,
-    /// The name of the effect or of the unmodelled form; for a background, its strengths.
+    /// The name of the effect or of the unmodelled form; for a background, its strengths; for a filter, its cut-off.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,
@@ -66,16 +69,6 @@ impl Trace {
                     nats,
                 }),
         );
-    }
-
-    /// Begins with the decisions of an earlier search.
-    pub fn follow(&self, earlier: &Self) {
-        let before = earlier
-            .0
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .clone();
-        *self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = before;
     }
 
     /// Returns and removes all decisions.

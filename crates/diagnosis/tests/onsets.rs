@@ -4,7 +4,7 @@ mod support;
 
 use arm::Vector3;
 use diagnosis::{Options, Wanted};
-use support::{ELBOW, Motion, baseline_friction, diagnosed, diagnosed_with, sentences, trio};
+use support::{ELBOW, Motion, baseline_friction, diagnosed, diagnosed_with, named, sentences, trio};
 
 /// Effects that begin within the recordings are named with their onset.
 #[test]
@@ -103,4 +103,36 @@ fn an_effect_requested_with_an_onset_is_fitted_with_it() {
     }
     let (onset, offset) = offset_of(Some(false));
     assert!(onset.is_none() && offset < 1.4, "{onset:?} {offset}");
+}
+
+/// A torque constant that changes multiplies friction and the rotor's torque, too: neither a wrong factor nor a constant torque is
+/// named.
+#[test]
+fn a_torque_constant_that_changes_multiplies_the_whole_torque() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        tau[ELBOW] += 1.5 * motion.qdd[ELBOW] + 3.0 * motion.qd[ELBOW];
+        baseline_friction(motion, tau);
+        if motion.clock >= 1006.0 {
+            tau[ELBOW] *= 1.2;
+        }
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let name = trio().joints()[ELBOW].name.clone();
+    let special: Vec<_> = named(&diagnosis)
+        .into_iter()
+        .filter(|(effect, _)| *effect != "rotor_inertia")
+        .collect();
+    assert_eq!(
+        special,
+        [("torque_scale", Some(name.as_str()))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let finding = diagnosis
+        .report
+        .findings
+        .iter()
+        .find(|finding| finding.effect == "torque_scale");
+    let parameters = &finding.expect("it is named").parameters;
+    assert!((parameters["factor"].value - 1.2).abs() < 0.01, "{parameters:?}");
 }

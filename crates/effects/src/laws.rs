@@ -52,8 +52,8 @@ pub static ACCELERATION: Law = Law {
     ..Law::PLAIN
 };
 
-/// The rigid torque of the joint. Since an onset it is the joint's whole torque, with the rest that an earlier fit found: what the
-/// drive adds is then known from the time before.
+/// The rigid torque of the joint. Since an onset, it is with the rest that an earlier fit found: what friction and the rotor add is then
+/// known from the time before.
 pub static RIGID: Law = Law {
     name: "rigid",
     column: |term, joint, motion| {

@@ -36,8 +36,8 @@ pub struct Rigid<'a> {
     pub tau: &'a [Vec<f64>],
     /// The rotor inertias that τ and the mass matrix contain (kg m² or kg); none where empty.
     pub rotors: &'a [f64],
-    /// The torque of the drive that τ does not contain, such as friction and the rotor's, as an earlier fit found it; none where
-    /// empty (N m or N).
+    /// The torque of the joint that τ does not contain, such as friction and the rotor's, without that of gaps and springs, as an
+    /// earlier fit found it; none where empty (N m or N).
     pub rest: &'a [Vec<f64>],
     /// Each link's share of τ: `[joint][link]`.
     pub links: &'a [Vec<Vec<f64>>],

@@ -6,7 +6,6 @@ use crate::data::input::Input;
 use crate::data::measure::noise_share;
 use crate::data::motion::Motions;
 use crate::data::noise::WhiteNoise;
-use crate::data::statistics::median;
 use crate::thresholds::{
     CUTOFF, CUTOFF_PERIODS, HIGHEST_CUTOFF, LEAST_CUTOFF, LEAST_CUTOFF_PERIODS, MOST_NOISE, WORTH_RAISING,
 };
@@ -32,7 +31,7 @@ pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions
     if cutoff.is_some() {
         return motions;
     }
-    let tempo = median(motions.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect());
+    let tempo = motions.usual_tempo();
     let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
     if quick > WORTH_RAISING * motions.cutoff {
         motions = at(quick);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::data::input::Input;
 use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
+use crate::data::statistics::median;
 use crate::data::used::{Section, Used};
 use crate::thresholds::{LARGEST_CUTOFF, MOST_ROWS, ROWS_PER_PERIOD, STILL};
 
@@ -265,6 +266,11 @@ impl Motions {
                 .collect(),
             velocity_noise: white.q.iter().map(|noise| slope * noise).collect(),
         });
+    }
+
+    /// The median of the tempo of the joints that move (Hz).
+    pub fn usual_tempo(&self) -> f64 {
+        median(self.tempo.iter().copied().filter(|&tempo| tempo > 0.0).collect())
     }
 
     /// Converts a time of the diagnosis' clock to the clock of a recording (s).

@@ -15,7 +15,8 @@ pub struct Rigid {
     pub tau: Vec<Vec<f64>>,
     /// The rotor inertias that τ and the mass matrix contain, which are known ones (kg m² or kg).
     pub rotors: Vec<f64>,
-    /// The torque of the drives that τ does not contain, as an earlier fit found it (N m or N); empty without one.
+    /// The torque of each joint that τ does not contain, without gaps and springs, as an earlier fit found it (N m or N); empty
+    /// without one.
     pub rest: Vec<Vec<f64>>,
     /// Each link's share of τ: `[joint][link]`.
     pub links: Vec<Vec<Vec<f64>>>,

@@ -194,6 +194,7 @@ impl Conclusion {
                 held_out: names(true),
                 used_in_part: used_in_part(&motions.sources),
             },
+            cutoff: Some(motions.cutoff),
             doubts: Vec::new(),
             warnings: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),

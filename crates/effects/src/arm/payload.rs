@@ -200,7 +200,7 @@ impl EffectKind for Payload {
         let mass = estimate.note_within(systematic, "mass", &|draw| read(draw)[0]);
         let mut com = [0.0; 3];
         for (k, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
-            com[k] = estimate.note_within(systematic, key, &|draw| {
+            com[k] = estimate.note(key, |draw| {
                 let parameters = read(draw);
                 parameters[1 + k] / parameters[0]
             });

@@ -186,7 +186,7 @@ impl Study {
             .iter()
             .zip(&fit.coefficients)
             .map(|(&column, &value)| (self.table.terms[column], value))
-            .filter(|(term, _)| !term.is_dynamic() && term.onset().is_none())
+            .filter(|(term, _)| term.law.carry.is_none() && term.law.link_side.is_none() && term.onset().is_none())
             .collect();
         let rest = |chunk: &Chunk, rigid: &Rigid, joint: usize| {
             let mut sum = vec![0.0; chunk.ticks()];
@@ -245,8 +245,8 @@ impl Study {
         (set.iter().map(|&number| numbers[number]).collect(), terms)
     }
 
-    /// Refuses the hypothesis of `candidate` on its joint. A torque constant within the usual tolerance says nothing against one that
-    /// changes at some time, and conversely.
+    /// Refuses the hypothesis of `candidate` on its joint, as it acts: always, or from an onset on. A torque constant within the usual
+    /// tolerance, for example, says nothing against one that changes at some time.
     pub fn refuse(&mut self, candidate: usize) {
         self.refused.push(self.claim(candidate));
     }

@@ -131,6 +131,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         },
         next_experiment: None,
         is_requested: false,
+        cutoff: Some(12.0),
         verdict: match plot {
             Plot::Clean => Verdict::NoMismatch,
             Plot::Rich => Verdict::PartlyExplained,

@@ -84,7 +84,7 @@ fn size(factor: &Factor) -> String {
     };
     format!(
         "The estimated factor of the inertias is {:.6}; the ground truth is {:.6}, and the error is {}. The 95 % interval, {low} to {high}, {holds} the ground truth; \
-         its width includes one per cent of the value, which every interval allows for filtering and model form errors.",
+         its half-width includes two per cent of the value, which every interval allows for filtering and model form errors.",
         factor.value,
         factor.truth,
         rounded(factor.off.abs(), 2)
