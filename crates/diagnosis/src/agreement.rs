@@ -4,9 +4,8 @@ use arm::Arm;
 use effects::{Effect, EffectKind, OMITTED_BY_MOST};
 
 use crate::data::Data;
-use crate::data::input::Input;
+use crate::data::input::{Input, check};
 use crate::data::statistics::deviation;
-use crate::diagnose::check;
 use crate::error::DiagnosisError;
 use crate::options::{Options, Wanted};
 use crate::regression::fit::Products;

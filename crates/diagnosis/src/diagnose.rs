@@ -2,13 +2,13 @@
 
 use arm::Arm;
 
-use crate::data::input::Input;
+use crate::data::input::{Input, check};
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnosisError;
 use crate::look::Look;
 use crate::next;
 use crate::options::{Options, Step};
-use crate::thresholds::{CUTOFF, LARGEST_CUTOFF, LEAST_WIDTHS};
+use crate::thresholds::CUTOFF;
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
 ///
@@ -37,33 +37,4 @@ pub fn diagnose(
         diagnosis.next = next.motion;
     }
     Ok(diagnosis)
-}
-
-/// Whether `inputs` can be diagnosed with `arm` at all.
-pub(crate) fn check(arm: &Arm, inputs: &[Input<'_>], cutoff: f64) -> Result<(), DiagnosisError> {
-    if inputs.iter().all(|input| input.held_out) {
-        return Err(DiagnosisError::NoTraining);
-    }
-    let expected: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
-    for input in inputs {
-        let recording = input.recording;
-        if recording.joints != expected {
-            return Err(DiagnosisError::Joints {
-                recording: input.name.to_owned(),
-                found: recording.joints.clone(),
-                expected,
-            });
-        }
-        let needed = LEAST_WIDTHS * LARGEST_CUTOFF / cutoff.min(LARGEST_CUTOFF / recording.period);
-        let longest = recording.segments.iter().map(|s| s.ticks.len()).max().unwrap_or(0) as f64 * recording.period;
-        if longest < needed {
-            return Err(DiagnosisError::TooShort {
-                recording: input.name.to_owned(),
-                seconds: longest,
-                cutoff,
-                needed,
-            });
-        }
-    }
-    Ok(())
 }

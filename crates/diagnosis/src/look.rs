@@ -6,8 +6,7 @@
 use arm::Arm;
 
 use crate::data::Data;
-use crate::data::input::Input;
-use crate::diagnose::check;
+use crate::data::input::{Input, check};
 use crate::error::DiagnosisError;
 use crate::findings::conclusion::Conclusion;
 use crate::options::{Options, Step};
