@@ -110,7 +110,7 @@ pub const CHANNEL_LIMITS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 /// definition.
 pub const CHANNEL_LOADS: usize = 4;
 /// The cut-off of a second look, as a part of that of the first. Source: `prove`, seeds 5501, 271126 and 3112026, with 5 Hz in the
-/// place of 12 Hz: in 61 diagnoses with unexplained residuals, injected effects explain those of three, and one of 33 unknown effects
+/// place of 12 Hz: in 59 diagnoses with unexplained residuals, injected effects explain those of three, and one of 36 unknown effects
 /// is explained by a false one without [`OF_THE_UNEXPLAINED`], and none with it.
 pub const SLOWER_FILTER: f64 = 0.42;
 /// A second look is worth its time if its cut-off is at most this part of the first.
