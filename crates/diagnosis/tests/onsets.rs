@@ -72,6 +72,38 @@ fn a_payload_picked_up_has_its_onset() {
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
 }
 
+/// A wrong torque constant also multiplies the torque of a payload that is picked up within the recordings.
+#[test]
+fn a_torque_constant_multiplies_a_payload_picked_up() {
+    let body = arm::Inertia {
+        mass: 1.2,
+        com: Vector3::new(0.02, -0.01, 0.08),
+        tensor: arm::Matrix3::identity() * 2e-3,
+    };
+    let (empty, loaded) = (trio(), trio().with_payload(&body));
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        if motion.clock >= 1006.0 {
+            let mut workspace = arm::Workspace::new(&loaded);
+            loaded.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
+        }
+        baseline_friction(motion, tau);
+        tau[ELBOW] *= 1.3;
+    };
+    let diagnosis = diagnosed(&empty, &empty, &injected, Vec::new());
+    let names = [("payload", None), ("torque_scale", Some("elbow"))];
+    let mut found = named(&diagnosis);
+    found.sort_unstable();
+    assert_eq!(found, names, "{:?}", sentences(&diagnosis));
+    let of = |effect: &str, parameter: &str| {
+        let mut findings = diagnosis.report.findings.iter();
+        let finding = findings.find(|finding| finding.effect == effect);
+        finding.expect("it is found").parameters[parameter].value
+    };
+    assert!((of("payload", "mass") - 1.2).abs() < 0.03, "{}", of("payload", "mass"));
+    let factor = of("torque_scale", "factor");
+    assert!((factor - 1.3).abs() < 0.02, "{factor}");
+}
+
 /// An effect that is requested with an onset is fitted with an onset.
 #[test]
 fn an_effect_requested_with_an_onset_is_fitted_with_it() {

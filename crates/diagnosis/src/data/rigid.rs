@@ -38,10 +38,8 @@ pub struct Rigid {
     pub force: Vec<[Vec<f64>; 3]>,
     /// The part of τ that is due to inertial parameters other than the URDF's; empty if there are none.
     pub background: Vec<Vec<f64>>,
-    /// The arm.
-    arm: Option<Arm>,
-    /// The true positions of the joints minus the encoders' (rad or m).
-    offset: Vec<f64>,
+    /// The arms, each with the tick from which on it is evaluated and the true positions of the joints minus the encoders' (rad or m).
+    arms: Vec<(usize, Arm, Vec<f64>)>,
 }
 
 impl Rigid {
@@ -91,15 +89,46 @@ impl Rigid {
             .map(move |mass| mass - self.rotors[joint])
     }
 
-    /// Sets `background` to the difference of the torque from that of `arm` at the same positions of the joints.
+    /// Sets `background` to the difference of the torque from that of `arm` at the same positions of the joints, of an arm that is the
+    /// same at all ticks.
     pub fn set_background(&mut self, arm: &Arm, chunk: &Chunk) {
-        let along = Along::new(chunk, &self.offset, 0..chunk.ticks());
+        let offset = self.arms.first().map_or(&[][..], |(_, _, offset)| offset);
+        let along = Along::new(chunk, offset, 0..chunk.ticks());
         let mut tau = vec![0.0; along.q.len()];
         arm.inverse_dynamics_batch(&along.q, &along.qd, &along.qdd, &mut tau);
         self.background = self.tau.clone();
         for (background, tau) in self.background.iter_mut().zip(tau.chunks_exact(chunk.ticks())) {
             background.iter_mut().zip(tau).for_each(|(sum, tau)| *sum -= tau);
         }
+    }
+
+    /// Replaces everything from `tick` on by `later`, which is of another arm along the same chunk.
+    pub fn replace_from(&mut self, tick: usize, mut later: Self) {
+        for (own, later) in self.signals().zip(later.signals()) {
+            own[tick..].copy_from_slice(&later[tick..]);
+        }
+        let arms = later.arms.into_iter();
+        self.arms.extend(arms.map(|(from, arm, offset)| (from.max(tick), arm, offset)));
+    }
+
+    /// All signals.
+    fn signals(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let plain = [&mut self.tau, &mut self.rest, &mut self.background];
+        let by_joint = [
+            &mut self.links,
+            &mut self.payload,
+            &mut self.fixed_bodies,
+            &mut self.by_position,
+            &mut self.by_velocity,
+            &mut self.mass,
+        ];
+        let by_axis = [&mut self.gravity, &mut self.force];
+        plain
+            .into_iter()
+            .flatten()
+            .chain(by_joint.into_iter().flatten().flatten())
+            .chain(self.tilt.iter_mut().flatten())
+            .chain(by_axis.into_iter().flatten().flatten())
     }
 
     /// Evaluates as [`Self::new`] does; without `derivatives`, ∂τ/∂q and ∂τ/∂q̇ stay zero.
@@ -127,8 +156,7 @@ impl Rigid {
             gravity: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
             force: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
             background: Vec::new(),
-            arm: Some(arm.clone()),
-            offset: offset.to_vec(),
+            arms: vec![(0, arm.clone(), offset.to_vec())],
         };
         let gravity = *arm.gravity();
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -223,8 +251,7 @@ impl Rigid {
     /// The torque on each joint per unit of each inertial parameter of each link, on the rows of `chunk`:
     /// `[joint][10 link + parameter]`, empty for links before the joint.
     pub fn inertial_columns(&self, chunk: &Chunk) -> Vec<Vec<Vec<f64>>> {
-        let Some(arm) = &self.arm else { return Vec::new() };
-        let (n, ticks) = (arm.dof(), chunk.ticks());
+        let (n, ticks) = (self.tau.len(), chunk.ticks());
         let mut signals: Vec<Vec<Vec<f64>>> = (0..n)
             .map(|joint| {
                 let acts = |k: usize| k / PARAMETERS_PER_LINK >= joint;
@@ -233,9 +260,13 @@ impl Rigid {
                     .collect()
             })
             .collect();
-        for from in (0..ticks).step_by(TOGETHER) {
-            let span = from..ticks.min(from + TOGETHER);
-            let states = Along::new(chunk, &self.offset, span.clone());
+        let ends = self.arms.iter().skip(1).map(|(from, ..)| *from).chain([ticks]);
+        let spans = self.arms.iter().zip(ends).flat_map(|((from, arm, offset), end)| {
+            let starts = (*from..end).step_by(TOGETHER);
+            starts.map(move |from| (arm, offset, from..end.min(from + TOGETHER)))
+        });
+        for (arm, offset, span) in spans {
+            let states = Along::new(chunk, offset, span.clone());
             let count = span.len();
             let mut regressor = vec![0.0; states.q.len() * PARAMETERS_PER_LINK * n];
             arm.torque_regressor_batch(&states.q, &states.qd, &states.qdd, &mut regressor);

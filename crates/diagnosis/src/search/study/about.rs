@@ -5,6 +5,8 @@ use effects::arm::{INERTIAL_PARAMETER, body};
 use effects::{Carried, Term};
 
 use crate::data::Data;
+use crate::data::motion::Chunk;
+use crate::data::rigid::Rigid;
 use crate::regression::bodies;
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
@@ -24,21 +26,55 @@ pub struct About {
 impl About {
     /// The arm of `data` with the links' scale errors of `fit`, and nothing else.
     pub fn scaled(data: &Data, table: &Table, fit: &Fit) -> Arm {
-        collected(data, table, fit, false).0.arm
+        collected(data, table, fit, f64::NEG_INFINITY).0.arm
     }
 
-    /// The arm of `data` with the effects of `fit` that always act.
-    pub fn new(data: &Data, table: &Table, fit: &Fit) -> Self {
-        Self::with(data, table, fit, collected(data, table, fit, false))
+    /// The arm of `data` with the effects of `fit`, after each of their onsets: the times from which each one is right (s), ascending
+    /// from −∞ on. Torque constants, and other effects that depend on the joints' torques, then also act on the torque of a payload
+    /// that was picked up on the way.
+    pub fn stages(data: &Data, table: &Table, fit: &Fit) -> Vec<(f64, Self)> {
+        let carried = |&column: &usize| table.terms[column].law.carry.is_some();
+        let columns = fit.columns.iter().filter(|column| carried(column));
+        let mut times: Vec<f64> = columns.filter_map(|&column| table.terms[column].onset()).collect();
+        times.push(f64::NEG_INFINITY);
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let stage = |at: f64| (at, Self::with(data, table, fit, collected(data, table, fit, at)));
+        times.into_iter().map(stage).collect()
     }
 
-    /// The arm since the recordings from before, with all effects of `fit`; `None` if it is the same as before. Torque
-    /// constants, and other effects that are proportional to the joints' torques, then also act on the torque of a new
-    /// payload.
-    pub fn since_before(data: &Data, table: &Table, fit: &Fit) -> Option<Self> {
-        let (found, carried) = collected(data, table, fit, true);
-        let sets_in = carried.iter().any(|(term, _)| term.onset().is_some());
-        sets_in.then(|| Self::with(data, table, fit, (found, carried)))
+    /// The arm of `data` with all effects of `fit`, as it is after the recordings.
+    pub fn last(data: &Data, table: &Table, fit: &Fit) -> Self {
+        Self::with(data, table, fit, collected(data, table, fit, f64::INFINITY))
+    }
+
+    /// The rigid model along `chunk` of an arm with these stages; the links' shares are those of links with the inertial parameters
+    /// `nominal`.
+    pub fn along(stages: &[(f64, Self)], nominal: &[f64], chunk: &Chunk) -> Rigid {
+        let ticks = chunk.ticks();
+        let first = |(from, _): &(f64, Self)| (0..ticks).take_while(|&tick| chunk.time(tick) < *from).count();
+        let starts: Vec<usize> = stages.iter().map(first).collect();
+        let mut rigid: Option<Rigid> = None;
+        for (k, (_, stage)) in stages.iter().enumerate() {
+            let end = starts.get(k + 1).copied().unwrap_or(ticks);
+            if starts[k] == end {
+                continue;
+            }
+            let own = stage.rigid(nominal, chunk);
+            match &mut rigid {
+                Some(rigid) => rigid.replace_from(starts[k], own),
+                None => rigid = Some(own),
+            }
+        }
+        rigid.unwrap_or_default()
+    }
+
+    fn rigid(&self, nominal: &[f64], chunk: &Chunk) -> Rigid {
+        let mut rigid = Rigid::new(&self.arm, nominal, &self.offset, chunk);
+        if let Some(bare) = &self.bare {
+            rigid.set_background(bare, chunk);
+        }
+        rigid
     }
 
     fn with(data: &Data, table: &Table, fit: &Fit, (found, carried): (Carried, Vec<(Term, f64)>)) -> Self {
@@ -96,9 +132,9 @@ pub fn inertial_changes(data: &Data, table: &Table, fit: &Fit) -> Vec<f64> {
     changes
 }
 
-/// Adds the effects of `fit` to the arm, with those that are there since the recordings from before if `since_before`; returns the
-/// terms that it then contains, with their coefficients.
-fn collected(data: &Data, table: &Table, fit: &Fit, since_before: bool) -> (Carried, Vec<(Term, f64)>) {
+/// Adds the effects of `fit` that act at the time `at` (s) to the arm; returns the terms that it then contains, with their
+/// coefficients.
+fn collected(data: &Data, table: &Table, fit: &Fit, at: f64) -> (Carried, Vec<(Term, f64)>) {
     let mut found = Carried {
         arm: data.arm.clone(),
         offset: vec![0.0; data.arm.dof()],
@@ -109,7 +145,7 @@ fn collected(data: &Data, table: &Table, fit: &Fit, since_before: bool) -> (Carr
     let mut carried = Vec::new();
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
         let term = table.terms[column];
-        let acts = term.onset().is_none() || since_before && term.onset() == data.motions.changed_at;
+        let acts = term.onset().is_none_or(|onset| onset <= at);
         if let (Some(carry), true) = (term.law.carry, acts) {
             carry(&term, value, &mut found);
             carried.push((term, value));

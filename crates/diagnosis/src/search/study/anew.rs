@@ -127,12 +127,10 @@ impl Study {
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
         self.set_bodies(fit);
-        let about = About::new(&self.data, &self.table, fit);
-        let since_before = About::since_before(&self.data, &self.table, fit);
-        // The effects that always act are among those that act since the recordings from before.
-        let carried = &since_before.as_ref().unwrap_or(&about).carried;
+        let stages = About::stages(&self.data, &self.table, fit);
+        let last = &stages[stages.len() - 1].1;
         // The arm contains no effect, neither of this fit nor of an earlier selection.
-        let carries = !carried.is_empty() || about.bare.is_some();
+        let carries = !last.carried.is_empty() || last.bare.is_some();
         if !carries && !self.carries && !anyway {
             return None;
         }
@@ -143,16 +141,7 @@ impl Study {
             .motions
             .chunks
             .par_iter()
-            .map(|chunk| {
-                let is_later = self.data.motions.changed_at.is_some_and(|at| chunk.start >= at);
-                let later = since_before.as_ref().filter(|_| is_later);
-                let About { arm, offset, bare, .. } = later.unwrap_or(&about);
-                let mut rigid = Rigid::new(arm, &nominal, offset, chunk);
-                if let Some(bare) = bare {
-                    rigid.set_background(bare, chunk);
-                }
-                rigid
-            })
+            .map(|chunk| About::along(&stages, &nominal, chunk))
             .collect();
         let before = self.with_rest_of(fit, rigid);
         for joint in 0..self.data.motions.dof {
@@ -172,7 +161,7 @@ impl Study {
             &self.data.rigid,
             &self.data.scales,
             terms,
-            carried,
+            &last.carried,
             self.moving,
         );
         Some(set)
