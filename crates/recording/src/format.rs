@@ -5,6 +5,7 @@ mod csv_text;
 mod mat;
 mod mcap;
 mod npz;
+mod pages;
 mod parquet;
 mod rosbag2;
 mod thrift;

@@ -6,7 +6,7 @@ use std::panic::AssertUnwindSafe;
 
 use bytes::Bytes;
 use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ColumnChunkMetaData, KeyValue, RowGroupMetaData};
@@ -14,6 +14,7 @@ use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReade
 use parquet::schema::types::ColumnDescriptor;
 use serde::Deserialize;
 
+use super::pages::Checked;
 use super::thrift::has_endless_list;
 use super::{Format, Options};
 use crate::RecordingError;
@@ -166,7 +167,8 @@ fn columns(file: File) -> Result<Vec<(String, Column)>, String> {
         let group = reader.get_row_group(group).map_err(damaged)?;
         for (index, leaf) in leaves.iter_mut().enumerate() {
             if let Some(leaf) = leaf {
-                let column = group.get_column_reader(index).map_err(damaged)?;
+                let pages = group.get_column_page_reader(index).map_err(damaged)?;
+                let column = get_column_reader(schema.column(index), Box::new(Checked(pages)));
                 read_leaf(column, schema.column(index).as_ref(), leaf, &mut room)?;
             }
         }
