@@ -1,6 +1,7 @@
 //! Phase 3, search: the effects, forms and sizes that together explain the training recordings.
 
 pub mod candidate;
+mod connection;
 pub mod own_load;
 pub mod physics;
 pub mod plan;

@@ -150,3 +150,26 @@ fn a_delay_shows_in_the_torque_of_a_drive_that_the_urdf_does_not_contain() {
     let delay = delay.expect("it is named").value;
     assert!((delay / 0.009 - 1.0).abs() < 0.15, "{delay}");
 }
+
+/// What a changed torque constant multiplies is known only when it has been found; until then, the friction that is left seems to fall
+/// with time.
+#[test]
+fn a_torque_constant_that_changes_leaves_no_drift() {
+    for (factor, level) in [(0.6, 1.0), (0.75, 0.3)] {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            for joint in 0..3 {
+                tau[joint] += level * motion.qd[joint].signum() + 0.3 * motion.qd[joint];
+            }
+            if motion.clock >= 24.0 {
+                tau[ELBOW] *= factor;
+            }
+        };
+        let found = diagnosed(&injected, rotors());
+        assert_eq!(
+            named(&found),
+            [("torque_scale", Some("elbow"))],
+            "{:?}",
+            sentences(&found)
+        );
+    }
+}

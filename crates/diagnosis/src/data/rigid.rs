@@ -108,7 +108,8 @@ impl Rigid {
             own[tick..].copy_from_slice(&later[tick..]);
         }
         let arms = later.arms.into_iter();
-        self.arms.extend(arms.map(|(from, arm, offset)| (from.max(tick), arm, offset)));
+        self.arms
+            .extend(arms.map(|(from, arm, offset)| (from.max(tick), arm, offset)));
     }
 
     /// All signals.

@@ -1,6 +1,7 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
 use crate::options::Step;
+use crate::search::connection;
 use crate::search::problem::Selection;
 use crate::search::refine::refine;
 use crate::search::study::Study;
@@ -73,6 +74,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
             break;
         }
     }
+    selected = connection::in_place_of_delays(study, selected);
     // With all sizes found, candidates that did not pay or were impossible before may do so.
     for _ in 0..MOST_LAST {
         let products = study.training_products();
@@ -84,6 +86,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
             break;
         }
         selected = refine(study, selected, false);
+        selected = connection::in_place_of_delays(study, selected);
     }
     let selected = study.without_imitations(selected);
     let selected = study.with_payload_for_last_link(selected);

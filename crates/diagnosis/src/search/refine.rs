@@ -4,6 +4,7 @@ use effects::{Size, Term};
 use rayon::prelude::*;
 
 use crate::data::statistics::mean;
+use crate::search::candidate::Candidate;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::{FINER_STEPS, OTHER_FORM_SIZES, REFINED_ONSET, REFINED_SIZES, REFINED_STEPS, SECOND_SIZE_STEP};
@@ -158,73 +159,102 @@ pub fn refine(study: &mut Study, selected: Selection, again: bool) -> Selection 
 }
 
 /// Refines the sizes in `selected`; all members stay, in their order.
-pub fn resize(study: &mut Study, mut selected: Selection, again: bool) -> Selection {
-    for round in (if again { 2 } else { 0 })..REFINED_SIZES.len() {
-        let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
-        let mut missing = Vec::new();
-        for &member in &selected.set {
-            let candidate = &study.candidates[member];
-            let terms: Vec<Term> = candidate
-                .columns
-                .iter()
-                .map(|&column| study.table.terms[column])
-                .collect();
-            let mass = candidate.joint.map_or(0.0, |joint| {
-                mean(study.data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
-            });
-            let mut list = variants(&terms, round, mass, study.data.motions.changed_at);
-            if round == 0 {
-                list.extend(first_sizes(study, member));
-            }
-            list.retain(|terms| study.is_brief(terms));
-            for &term in list.iter().flatten() {
-                if !study.table.terms.contains(&term) && !missing.contains(&term) {
-                    missing.push(term);
-                }
-            }
-            if !list.is_empty() {
-                options.push((member, list));
-            }
-        }
-        if options.is_empty() {
-            break;
-        }
-        study.extend(missing);
-        let options: Vec<(usize, Vec<usize>)> = options
-            .into_iter()
-            .map(|(member, list)| {
-                let (hypothesis, joint) = (study.candidates[member].hypothesis, study.candidates[member].joint);
-                let known = study.candidates.len();
-                let add = |terms| study.add(hypothesis, joint, terms);
-                let indices = list.into_iter().map(add).collect();
-                study.candidates[known..]
-                    .iter_mut()
-                    .for_each(|trial| trial.is_trial = true);
-                (member, indices)
-            })
+pub fn resize(study: &mut Study, selected: Selection, again: bool) -> Selection {
+    resize_from(study, selected, if again { 2 } else { 0 }, &|_| true)
+}
+
+/// Refines the sizes of the members that are `included`.
+pub fn resize_only(study: &mut Study, selected: Selection, included: &dyn Fn(&Candidate) -> bool) -> Selection {
+    resize_from(study, selected, 0, included)
+}
+
+fn resize_from(
+    study: &mut Study,
+    mut selected: Selection,
+    first: usize,
+    included: &dyn Fn(&Candidate) -> bool,
+) -> Selection {
+    for round in first..REFINED_SIZES.len() {
+        selected = resize_once(study, selected, round, included);
+    }
+    selected
+}
+
+/// One round of refinement of the members that are `included`.
+fn resize_once(
+    study: &mut Study,
+    mut selected: Selection,
+    round: usize,
+    included: &dyn Fn(&Candidate) -> bool,
+) -> Selection {
+    let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
+    let mut missing = Vec::new();
+    for &member in selected
+        .set
+        .iter()
+        .filter(|&&member| included(&study.candidates[member]))
+    {
+        let candidate = &study.candidates[member];
+        let terms: Vec<Term> = candidate
+            .columns
+            .iter()
+            .map(|&column| study.table.terms[column])
             .collect();
-        let products = study.training_products();
-        let problem = study.problem(&products);
-        for (member, indices) in options {
-            let best = indices
-                .into_par_iter()
-                .filter_map(|index| {
-                    let set = selected
-                        .set
-                        .iter()
-                        .map(|&m| if m == member { index } else { m })
-                        .collect();
-                    let next = problem.choose(set, &selected.fit.weights);
-                    problem.is_possible(index, &next.fit).then_some(next)
-                })
-                .collect::<Vec<_>>()
-                .into_iter()
-                .min_by(|a, b| a.score.total_cmp(&b.score));
-            if let Some(best) = best
-                && best.score < selected.score
-            {
-                selected = best;
+        let mass = candidate.joint.map_or(0.0, |joint| {
+            mean(study.data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
+        });
+        let mut list = variants(&terms, round, mass, study.data.motions.changed_at);
+        if round == 0 {
+            list.extend(first_sizes(study, member));
+        }
+        list.retain(|terms| study.is_brief(terms));
+        for &term in list.iter().flatten() {
+            if !study.table.terms.contains(&term) && !missing.contains(&term) {
+                missing.push(term);
             }
+        }
+        if !list.is_empty() {
+            options.push((member, list));
+        }
+    }
+    study.extend(missing);
+    let options: Vec<(usize, Vec<usize>)> = options
+        .into_iter()
+        .map(|(member, list)| {
+            let (hypothesis, joint) = (study.candidates[member].hypothesis, study.candidates[member].joint);
+            let known = study.candidates.len();
+            let add = |terms| study.add(hypothesis, joint, terms);
+            let indices = list.into_iter().map(add).collect();
+            study.candidates[known..]
+                .iter_mut()
+                .for_each(|trial| trial.is_trial = true);
+            (member, indices)
+        })
+        .collect();
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    for (member, indices) in options {
+        // A size must not become that of another member, as the periods of two ripples may.
+        let is_another = |index: usize| selected.set.iter().any(|&m| m != member && problem.exclude(index, m));
+        let best = indices
+            .into_par_iter()
+            .filter(|&index| !is_another(index))
+            .filter_map(|index| {
+                let set = selected
+                    .set
+                    .iter()
+                    .map(|&m| if m == member { index } else { m })
+                    .collect();
+                let next = problem.choose(set, &selected.fit.weights);
+                problem.is_possible(index, &next.fit).then_some(next)
+            })
+            .collect::<Vec<_>>()
+            .into_iter()
+            .min_by(|a, b| a.score.total_cmp(&b.score));
+        if let Some(best) = best
+            && best.score < selected.score
+        {
+            selected = best;
         }
     }
     selected

@@ -19,7 +19,8 @@ use crate::selection::unclear::{Unclear, unclear};
 use crate::selection::without_moment::without_moment;
 
 use crate::thresholds::{
-    HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_MOUNTED, LEAST_UNDECIDED, PARTLY, UNDECIDED_NATS,
+    HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_MOUNTED, LEAST_UNDECIDED, MOST_SETTLING, PARTLY,
+    UNDECIDED_NATS,
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
@@ -94,8 +95,29 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usi
     judged.members = judge::describe(problem, &judged.named);
 }
 
-/// Evaluates all columns about the arm that contains exactly the named effects, including the rows near reversals, and fits again.
+/// Evaluates all columns about the arm that contains exactly the named effects, including the rows near reversals, and fits again. What
+/// a changed torque constant multiplies must settle; names that it had brought along are removed.
 fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
+    relinearise_once(study, judged, as_given);
+    for _ in 0..MOST_SETTLING {
+        if study.has_settled(&judged.named.fit) {
+            return;
+        }
+        relinearise_once(study, judged, as_given);
+        if !as_given {
+            let products = study.training_products();
+            let problem = study.problem(&products);
+            let pruned = problem.prune(judged.named.clone());
+            study.note("costs more evidence than it brings", &judged.named, &pruned);
+            torque_constants::keep_named_ones(study, &pruned.set);
+            judged.named = pruned;
+            let products = study.training_products();
+            judged.members = judge::describe(&study.problem(&products), &judged.named);
+        }
+    }
+}
+
+fn relinearise_once(study: &mut Study, judged: &mut Judged, as_given: bool) {
     let kept = study.linearise_for_final_fit(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
     torque_constants::keep_named_ones(study, &kept[..named]);

@@ -48,6 +48,12 @@ pub const KNOWN_DRIVE: f64 = 3.0;
 /// joint has changed by more than this part of its standard deviation since. Source: 111 simulated cases, in which the
 /// names are those without it; some number differs in 18.
 pub const SIMULATED_ANEW: f64 = 0.03;
+/// The final fit is repeated, at most [`MOST_SETTLING`] times, until the friction and the rotor's torque that a changed torque constant
+/// multiplies change by less than this part of the torque's standard deviation. Source: a simulated case in which the two evaluations
+/// of the search left 7 % of a friction, which was named a thermal drift.
+pub const SETTLED: f64 = 0.002;
+/// See [`SETTLED`].
+pub const MOST_SETTLING: usize = 6;
 /// The gain that an exchange of a candidate for another must bring (nats). Source: first diagnosis.
 pub const SWAP_GAIN: f64 = 0.5;
 /// In the search for another load of some recordings, the least standard deviation of a residual, as a part of that of the

@@ -9,6 +9,8 @@ use diagnosis::{Diagnosis, DiagnosisError, Input, Options, diagnose};
 use effects::Effect;
 use recording::{Recording, RegularRecording};
 
+pub mod gap;
+
 /// Three joints: a turning column, a shoulder and an elbow.
 pub const TRIO: &str = include_str!("trio.urdf");
 

@@ -1,6 +1,7 @@
 //! The study evaluated again: about the arm of a fit, for the final fit, or for another search.
 
 use effects::Term;
+use effects::laws::RIGID;
 use rayon::prelude::*;
 
 use super::about::inertial_changes;
@@ -17,7 +18,7 @@ use crate::regression::strengths::Strengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Selection;
-use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SIMULATED_ANEW};
+use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SETTLED, SIMULATED_ANEW};
 
 impl Study {
     /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.
@@ -169,6 +170,13 @@ impl Study {
 
     /// Replaces the rigid model by `rigid`, to which the torques of the drives in `fit` are added; returns the one before.
     fn with_rest_of(&mut self, fit: &Fit, mut rigid: Vec<Rigid>) -> Vec<Rigid> {
+        let rest = self.rest_of(fit, &rigid);
+        rigid.iter_mut().zip(rest).for_each(|(rigid, rest)| rigid.rest = rest);
+        std::mem::replace(&mut self.data.rigid, rigid)
+    }
+
+    /// The torques of the drives in `fit`, with the rigid model `rigid` (N m or N): `[chunk][joint][tick]`.
+    fn rest_of(&self, fit: &Fit, rigid: &[Rigid]) -> Vec<Vec<Vec<f64>>> {
         let data = &self.data;
         let of_drives: Vec<(Term, f64)> = fit
             .columns
@@ -186,12 +194,31 @@ impl Study {
             sum
         };
         rigid
-            .par_iter_mut()
+            .par_iter()
             .zip(&data.motions.chunks)
-            .for_each(|(rigid, chunk)| {
-                rigid.rest = (0..data.motions.dof).map(|joint| rest(chunk, rigid, joint)).collect();
-            });
-        std::mem::replace(&mut self.data.rigid, rigid)
+            .map(|(rigid, chunk)| (0..data.motions.dof).map(|joint| rest(chunk, rigid, joint)).collect())
+            .collect()
+    }
+
+    /// Whether the torques of the drives are those of `fit`, as far as a torque constant that changes multiplies them.
+    pub fn has_settled(&self, fit: &Fit) -> bool {
+        let changes = |&column: &usize| {
+            let term = self.table.terms[column];
+            (term.always().is(&RIGID) && term.onset().is_some())
+                .then(|| term.joint())
+                .flatten()
+        };
+        let joints: Vec<usize> = fit.columns.iter().filter_map(changes).collect();
+        if joints.is_empty() {
+            return true;
+        }
+        let now = self.rest_of(fit, &self.data.rigid);
+        joints.into_iter().all(|joint| {
+            let pairs = now.iter().zip(&self.data.rigid);
+            let differences = pairs.flat_map(|(now, before)| now[joint].iter().zip(&before.rest[joint]));
+            let change = rms(differences.map(|(now, before)| now - before)).unwrap_or(0.0);
+            change <= SETTLED * self.data.scales.torque[joint]
+        })
     }
 
     /// Whether the torque of the arm on `joint` is nearly the one along which its springs and gaps were simulated: `[chunk][tick]` (N m

@@ -1,0 +1,41 @@
+//! Gaps in the gear of a joint about the vertical, on which gravity does not act.
+
+mod support;
+
+use diagnosis::Diagnosis;
+use support::gap::with_gap;
+use support::{diagnosed, effects_on, sentences, trio};
+
+/// The diagnosis of a gap on a URDF whose links are wrong by `wrong`, and its size found over the true one.
+fn found(halfgap: f64, wrong: f64) -> (Diagnosis, f64) {
+    let believed = (0..3).fold(trio(), |arm, link| {
+        arm.with_scaled_link(link, if link % 2 == 0 { 1.0 + wrong } else { 1.0 - wrong })
+    });
+    let diagnosis = diagnosed(&believed, &trio(), &with_gap(trio(), halfgap), Vec::new());
+    let findings = &diagnosis.report.findings;
+    let finding = findings.iter().find(|finding| finding.effect == "backlash");
+    let finding = finding.unwrap_or_else(|| panic!("{halfgap}: {:?}", sentences(&diagnosis)));
+    assert_eq!(finding.joint.as_deref(), Some("turn"));
+    let ratio = finding.parameters["halfgap"].value / halfgap;
+    (diagnosis, ratio)
+}
+
+/// A gap explains little until its size, and the stiffness and damping of its ends, are found; a delay, which has one size, explains a
+/// part of it at once.
+#[test]
+fn gaps_are_named_with_their_size() {
+    for wrong in [0.0, 0.1] {
+        for halfgap in [0.003, 0.006, 0.01] {
+            let (diagnosis, ratio) = found(halfgap, wrong);
+            assert!(
+                (ratio - 1.0).abs() < 0.1,
+                "{ratio} of {halfgap}, links wrong by {wrong}"
+            );
+            let on = effects_on(&diagnosis, "turn");
+            assert!(
+                !on.contains(&"actuation_delay") && !on.contains(&"joint_elasticity"),
+                "{on:?}"
+            );
+        }
+    }
+}
