@@ -38,25 +38,27 @@ fn an_effect_with_an_onset_is_named_with_it() {
     }
 }
 
-/// A payload that is picked up within the recordings is named as one payload, and not as effects on each joint.
-#[test]
-fn a_payload_picked_up_has_its_onset() {
-    let body = arm::Inertia {
+/// The torques of the arm, with a payload of 1.2 kg from 1006 s on.
+fn picked_up() -> impl Fn(&mut Motion, &mut [f64]) {
+    let loaded = trio().with_payload(&arm::Inertia {
         mass: 1.2,
         com: Vector3::new(0.02, -0.01, 0.08),
         tensor: arm::Matrix3::identity() * 2e-3,
-    };
-    let (empty, loaded) = (trio(), trio().with_payload(&body));
-    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+    });
+    move |motion, tau| {
         if motion.clock >= 1006.0 {
-            loaded.inverse_dynamics(
-                &mut arm::Workspace::new(&loaded),
-                &motion.q,
-                &motion.qd,
-                &motion.qdd,
-                tau,
-            );
+            let mut workspace = arm::Workspace::new(&loaded);
+            loaded.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
         }
+    }
+}
+
+/// A payload that is picked up within the recordings is named as one payload, and not as effects on each joint.
+#[test]
+fn a_payload_picked_up_has_its_onset() {
+    let (empty, picked_up) = (trio(), picked_up());
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        picked_up(motion, tau);
         baseline_friction(motion, tau);
     };
     let diagnosis = diagnosed(&empty, &empty, &injected, Vec::new());
@@ -75,17 +77,9 @@ fn a_payload_picked_up_has_its_onset() {
 /// A wrong torque constant also multiplies the torque of a payload that is picked up within the recordings.
 #[test]
 fn a_torque_constant_multiplies_a_payload_picked_up() {
-    let body = arm::Inertia {
-        mass: 1.2,
-        com: Vector3::new(0.02, -0.01, 0.08),
-        tensor: arm::Matrix3::identity() * 2e-3,
-    };
-    let (empty, loaded) = (trio(), trio().with_payload(&body));
+    let (empty, picked_up) = (trio(), picked_up());
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
-        if motion.clock >= 1006.0 {
-            let mut workspace = arm::Workspace::new(&loaded);
-            loaded.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
-        }
+        picked_up(motion, tau);
         baseline_friction(motion, tau);
         tau[ELBOW] *= 1.3;
     };
