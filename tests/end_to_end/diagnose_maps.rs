@@ -62,3 +62,31 @@ fn one_joint_in_degrees_or_off_by_a_quarter_and_two_swapped_torques_prevent_a_di
         &["the torques of shoulder and elbow seem swapped"],
     );
 }
+
+/// Of two joints, one may be in degrees alone; and its velocities may be in rad/s.
+#[test]
+fn degrees_of_one_of_two_joints_are_not_attributed_to_both() {
+    let examples = root().join("examples/double_pendulum");
+    let robot = examples.join("robot.urdf").display().to_string();
+    for (with_velocity, units) in [(false, vec!["q_unit"]), (true, vec!["q_unit", "qd_unit"])] {
+        let mut recording = Recording::read(&examples.join("r143339.csv.gz")).expect("it is a recording");
+        recording.q[0].iter_mut().for_each(|q| *q = q.to_degrees());
+        if let Some(qd) = recording.qd.as_mut().filter(|_| with_velocity) {
+            qd[0].iter_mut().for_each(|qd| *qd = qd.to_degrees());
+        }
+        let sandbox = Sandbox::new();
+        recording.write_csv(&sandbox.path("a.csv")).expect("it is written");
+        sandbox.succeed(&["inspect", "a.csv", "--robot", &robot, "--json", "o.json"]);
+        let map = sandbox.json("o.json")["files"][0]["column_map"].clone();
+        let map = map.as_str().unwrap_or_else(|| panic!("no map: {map}"));
+        let (joint1, joint2) = map.split_once("[joints.joint2]").expect("both joints");
+        let has: Vec<&str> = joint1
+            .lines()
+            .filter_map(|line| line.split_once("_unit"))
+            .map(|(key, _)| key)
+            .collect();
+        let expected: Vec<&str> = units.iter().map(|key| key.trim_end_matches("_unit")).collect();
+        assert_eq!(has, expected, "{map}");
+        assert!(!joint2.contains("unit"), "{map}");
+    }
+}

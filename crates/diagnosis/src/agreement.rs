@@ -63,7 +63,7 @@ pub fn agreement(
         only: Some(OMITTED_BY_MOST.iter().flat_map(wanted).collect()),
         ..Options::default()
     };
-    let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
+    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options);
     // Forms of friction in the background have no sign, and may drive a joint.
     study.stated.is_friction_plain = true;
     let is_plain = |&candidate: &usize| study.always_acts(candidate);
@@ -102,7 +102,7 @@ pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agree
         known: known.to_vec(),
         ..Options::default()
     };
-    let mut study = Study::new(Data::new(arm, inputs, &options)?, &options);
+    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options);
     let selected = plan::search(&mut study, &|_| ());
     Ok(found(&study, &study.training_products(), &selected).misfit)
 }

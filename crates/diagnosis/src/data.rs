@@ -52,6 +52,28 @@ impl Data {
     /// # Errors
     /// [`DiagnosisError`], if a known effect does not fit the arm.
     pub fn new(arm: &Arm, inputs: &[input::Input<'_>], options: &Options) -> Result<Self, DiagnosisError> {
+        Self::judged(arm, inputs, options, true)
+    }
+
+    /// As [`Data::new`], but a torque channel that contradicts the model counts as a torque: the recordings may be read wrongly, and
+    /// with and without a correction the same joints must be compared.
+    ///
+    /// # Errors
+    /// As for [`Data::new`].
+    pub fn before_a_correction(
+        arm: &Arm,
+        inputs: &[input::Input<'_>],
+        options: &Options,
+    ) -> Result<Self, DiagnosisError> {
+        Self::judged(arm, inputs, options, false)
+    }
+
+    fn judged(
+        arm: &Arm,
+        inputs: &[input::Input<'_>],
+        options: &Options,
+        by_model: bool,
+    ) -> Result<Self, DiagnosisError> {
         let known = known::Known::new(arm, &options.known)?;
         let arm = &known.arm;
         let mut motions = cutoff::filtered(inputs, options.cutoff, arm);
@@ -73,7 +95,7 @@ impl Data {
             }
         };
         exchange(&mut motions);
-        let without = channels::without_torque(inputs, &motions, &rigid, &scales);
+        let without = channels::without_torque(inputs, &motions, &rigid, &scales, by_model);
         exchange(&mut motions);
         for (joint, why) in without {
             scales.torque[joint] = 0.0;

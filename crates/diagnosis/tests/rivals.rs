@@ -2,13 +2,14 @@
 
 mod support;
 
-use arm::{Matrix6xX, Workspace};
+use arm::{Arm, Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use effects::Effect;
 use effects::drive::{ActuationDelay, Backlash, TorqueSaturation};
 use recording::RegularRecording;
 use support::{
-    ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, trio,
+    ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, start,
+    trio,
 };
 
 /// The findings beside baseline friction of the expected sizes: effects and joints.
@@ -99,7 +100,7 @@ fn in_a_row(injected: impl Fn(f64, &mut Motion, &mut [f64])) -> diagnosis::Diagn
         let at = |motion: &mut Motion, tau: &mut [f64]| injected(begins + motion.time, motion, tau);
         let mut recording = recorded(&arm, variant, 16.0, &at);
         for time in &mut recording.time {
-            *time -= support::start(variant) - begins;
+            *time -= start(variant) - begins;
         }
         regular(&recording)
     };
@@ -289,28 +290,52 @@ fn a_spring_in_the_drive_is_neither_backlash_nor_a_delay() {
     check(&injected, &[("joint_elasticity", "elbow")]);
 }
 
-/// From 6 s to 7.5 s in the first recording, a force of 5, 2 and 8 N on the tool.
+/// A force of 5, 2 and 8 N on the tool, for 1.5 s from the time `start` (s) on.
+fn pushed_from(arm: &Arm, start: f64, motion: &mut Motion, tau: &mut [f64]) {
+    if (start..start + 1.5).contains(&motion.clock) {
+        let mut jacobian = Matrix6xX::zeros(3);
+        arm.jacobian(&mut Workspace::new(arm), &motion.q, &arm.tool_frame(), &mut jacobian);
+        for (joint, tau) in tau.iter_mut().enumerate() {
+            let velocity = jacobian.fixed_view::<3, 1>(3, joint);
+            *tau -= velocity.dot(&arm::Vector3::new(5.0, 2.0, 8.0));
+        }
+    }
+    baseline_friction(motion, tau);
+}
+
+const PUSH: [(&str, f64); 4] = [("start", 6.0), ("duration", 1.5), ("force_x", 5.0), ("force_z", 8.0)];
+
 #[test]
 fn external_contact() {
     let arm = trio();
-    let injected = |motion: &mut Motion, tau: &mut [f64]| {
-        if (6.0..7.5).contains(&motion.clock) {
-            let mut jacobian = Matrix6xX::zeros(3);
-            arm.jacobian(&mut Workspace::new(&arm), &motion.q, &arm.tool_frame(), &mut jacobian);
-            for (joint, tau) in tau.iter_mut().enumerate() {
-                let velocity = jacobian.fixed_view::<3, 1>(3, joint);
-                *tau -= velocity.dot(&arm::Vector3::new(5.0, 2.0, 8.0));
-            }
-        }
-        baseline_friction(motion, tau);
-    };
+    let injected = |motion: &mut Motion, tau: &mut [f64]| pushed_from(&arm, 6.0, motion, tau);
     let diagnosis = check(&injected, &[("external_contact", "the whole arm")]);
-    is_sized(
-        &diagnosis,
-        "external_contact",
-        &[("start", 6.0), ("duration", 1.5), ("force_x", 5.0), ("force_z", 8.0)],
-        0.1,
-    );
+    is_sized(&diagnosis, "external_contact", &PUSH, 0.1);
+}
+
+/// If each recording has a clock of its own, the time of a contact is on that of its recording, which the sentence names.
+#[test]
+fn a_contact_is_on_the_clock_of_its_recording() {
+    let arm = trio();
+    let injected = |motion: &mut Motion, tau: &mut [f64]| pushed_from(&arm, start(1) + 6.0, motion, tau);
+    let recordings: Vec<RegularRecording> = [16.0, 16.0, 10.0]
+        .into_iter()
+        .enumerate()
+        .map(|(variant, seconds)| {
+            let mut recording = recorded(&arm, variant, seconds, &injected);
+            recording.time.iter_mut().for_each(|time| *time -= start(variant));
+            regular(&recording)
+        })
+        .collect();
+    let diagnosis = diagnose(&arm, &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    is_sized(&diagnosis, "external_contact", &PUSH, 0.1);
+    let finding = diagnosis
+        .report
+        .findings
+        .iter()
+        .find(|finding| finding.effect == "external_contact");
+    let sentence = &finding.expect("it is named").sentence;
+    assert!(sentence.contains(" s on, in b"), "{sentence}");
 }
 
 /// A constant with an onset on one joint is not a force on the tool, which would act on all joints.

@@ -7,6 +7,7 @@ use diagnosis::{Doubt, Finding, NotObservable, Report};
 use effects::Quantity;
 
 use crate::block::{Block, table, text};
+use crate::doubts::Certainty;
 use crate::{alternatives, doubts, markdown, next_words, numbers, terminal, words};
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
@@ -28,11 +29,11 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
         blocks.push(text(load));
     }
     blocks.push(text(format!("**{}**", words::verdict(report))));
-    blocks.extend(doubted(&report.doubts, report));
+    blocks.extend(doubted(&report.doubts, Certainty::Certain, report));
     blocks.push(text(recordings(report)));
     if !report.warnings.is_empty() {
         blocks.push(Block::Heading("Recordings that contradict the URDF"));
-        blocks.extend(doubted(&report.warnings, report));
+        blocks.extend(doubted(&report.warnings, Certainty::Possible, report));
     }
     for reason in &report.not_enough_data {
         blocks.push(text(format!("Not enough data: {reason}.")));
@@ -47,9 +48,9 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
 }
 
 /// Doubts or warnings, with the column maps that correct them.
-fn doubted(doubts: &[Doubt], report: &Report) -> Vec<Block> {
+fn doubted(doubts: &[Doubt], certainty: Certainty, report: &Report) -> Vec<Block> {
     let mut blocks = Vec::new();
-    for group in doubts::groups(doubts, report) {
+    for group in doubts::groups(doubts, certainty, report) {
         blocks.extend(group.texts.into_iter().map(|sentence| text(format!("{sentence}."))));
         if let Some(map) = group.map {
             blocks.push(text(group.usage));

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use arm::{Arm, JointKind};
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, Width, presets};
+use comfy_table::{CellAlignment, LineStyle, Table, presets};
 use diagnosis::statistics::rms;
 use diagnosis::{Finding, Located, NotObservable, Report, Unexplained};
 
+use crate::doubts::Certainty;
 use crate::{alternatives, doubts, next_words, numbers, regions, words};
 
+mod findings;
 pub(crate) mod steps;
 
 /// The width of lines in characters; a single longer word exceeds it.
@@ -102,7 +104,7 @@ fn opening(report: &Report) -> String {
         text.push('\n');
     }
     text += &wrapped(&words::verdict(report), "");
-    for group in doubts::groups(&report.doubts, report) {
+    for group in doubts::groups(&report.doubts, Certainty::Certain, report) {
         for sentence in &group.texts {
             text += &wrapped(sentence, "- ");
         }
@@ -111,8 +113,8 @@ fn opening(report: &Report) -> String {
         }
     }
     if !report.findings.is_empty() {
-        let _ = writeln!(text, "\n{}\n", findings(report));
-        text += &wrapped(&columns(report), "");
+        let _ = writeln!(text, "\n{}\n", findings::table(report));
+        text += &wrapped(&findings::columns(report), "");
         text.push('\n');
     }
     text
@@ -195,80 +197,6 @@ fn details(finding: &Finding) -> String {
             text
         }
     }
-}
-
-/// The explanation of the table's columns.
-fn columns(report: &Report) -> String {
-    let recordings = recordings(report);
-    let undetermined = if report.findings.iter().any(diagnosis::is_undetermined) {
-        "; where the interval of a size holds the value without effect (0, or × 1), these recordings do not determine the size"
-    } else {
-        ""
-    };
-    format!(
-        "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \
-         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found{undetermined}"
-    )
-}
-
-/// The findings by joint, the joint with the largest share first.
-fn findings(report: &Report) -> String {
-    let mut table = table(["joint", "effect", "size", "share", "error"].map(str::to_owned));
-    table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(WIDTH as u16);
-    let effects = report.findings.iter().map(words::effect);
-    let words = effects.flat_map(|effect| effect.split(' ').map(|word| word.chars().count()).max());
-    let longest = words.max().map_or(0, |length| length + 1) as u16;
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, if index == 4 { 0 } else { 1 }));
-        if index < 3 {
-            column.set_cell_alignment(CellAlignment::Left);
-        }
-        // Only the column of effects is wrapped. It is at least as wide as its longest word, because a narrower column
-        // would break the word.
-        column.set_constraint(if index == 1 {
-            ColumnConstraint::LowerBoundary(Width::Fixed(longest))
-        } else {
-            ColumnConstraint::ContentWidth
-        });
-    }
-    let mut by_joint: Vec<(Option<&str>, Vec<&Finding>)> = Vec::new();
-    for finding in &report.findings {
-        let joint = finding.joint.as_deref();
-        match by_joint.iter_mut().find(|(known, _)| *known == joint) {
-            Some((_, list)) => list.push(finding),
-            None => by_joint.push((joint, vec![finding])),
-        }
-    }
-    for (joint, list) in by_joint {
-        for (index, finding) in list.into_iter().enumerate() {
-            let is_first = index == 0;
-            let size = words::main_parameter(finding);
-            table.add_row([
-                if is_first {
-                    words::joint(joint).to_owned()
-                } else {
-                    String::new()
-                },
-                words::effect(finding),
-                size.map_or("–".into(), |(name, parameter)| {
-                    numbers::with_interval(name, parameter)
-                }),
-                words::share(finding).map_or_else(|| "–".into(), numbers::share),
-                if is_first || joint.is_none() {
-                    error(report, finding)
-                } else {
-                    String::new()
-                },
-            ]);
-        }
-    }
-    table
-        .to_string()
-        .lines()
-        .map(str::trim_end)
-        .collect::<Vec<_>>()
-        .join("\n")
 }
 
 /// The recordings that errors belong to: the held-out ones, if there are any.

@@ -252,8 +252,8 @@ fn propose(list: &mut [Prepared], arm: &Arm, known: &[Effect], notes: &mut Notes
 fn note_maps(list: &[Prepared], notes: &mut Notes) {
     for one in list.iter().filter(|one| one.doubts.is_empty()) {
         if one.warnings.iter().any(|warning| warning.column_map.is_some()) {
-            let text = "a column map that corrects it is in the report (--json, --markdown or --report); save it as map.toml, and add \
-                        --map map.toml";
+            let text = "a column map that would correct it, if that is the cause, is in the report (--json, --markdown or --report); \
+                        save it as map.toml, and add --map map.toml";
             notes.add("note", Kind::ColumnMap, &one.name, text.to_owned());
         }
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use arm::Arm;
 use recording::{ColumnMap, Quality, Recording, Warning};
+use report::doubts::{self, Certainty};
 use serde::Serialize;
 use study::check::{MisfitKind, turns};
 use study::notes::shortened;
@@ -125,12 +126,16 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
             && let Some(proposed) = check::proposal(arm, &[], &[&in_order])
         {
             column_map = check::Layout::of(&recording).map(&proposed.changes).or(column_map);
-            against_robot.push(check::Misfit::new(
+            let misfit = check::Misfit::new(
                 MisfitKind::Columns,
                 proposed.joint.as_deref(),
                 proposed.text,
                 proposed.changes,
-            ));
+            );
+            against_robot.push(check::Misfit {
+                prevents_diagnosis: proposed.is_certain,
+                ..misfit
+            });
         }
     }
     let warnings = recording.warnings.iter().cloned().chain(found);
@@ -213,7 +218,12 @@ fn shown(inspection: &FileInspection<'_>) -> String {
         let _ = writeln!(text, "- {}{}", about(misfit.joint.as_deref()), misfit.text);
     }
     if let Some(map) = &inspection.column_map {
-        let _ = write!(text, "- a column map that corrects it (--map):\n{map}");
+        let is_certain = |misfit: &check::Misfit| misfit.prevents_diagnosis && !misfit.changes.is_empty();
+        let certainty = match inspection.against_robot.iter().any(is_certain) {
+            true => Certainty::Certain,
+            false => Certainty::Possible,
+        };
+        let _ = write!(text, "- a {} (--map):\n{map}", doubts::of_a_map(certainty));
     }
     if inspection.warnings.is_empty() && quality.findings.is_empty() && inspection.against_robot.is_empty() {
         let _ = writeln!(text, "- no remarks");

@@ -50,17 +50,24 @@ impl Why {
 }
 
 /// The joints whose channels hold no torque, with the reason. `scales` give the speeds of the joints and the variation of the
-/// channels.
-pub fn without_torque(inputs: &[Input<'_>], motions: &Motions, rigid: &[Rigid], scales: &Scales) -> Vec<(usize, Why)> {
+/// channels. What contradicts the model counts only if `by_model`: with wrong signs, every channel may.
+pub fn without_torque(
+    inputs: &[Input<'_>],
+    motions: &Motions,
+    rigid: &[Rigid],
+    scales: &Scales,
+    by_model: bool,
+) -> Vec<(usize, Why)> {
     let dead = measure::dead(motions, rigid, &scales.torque);
     let list: Vec<(usize, Why)> = (0..motions.dof)
         .filter_map(|joint| {
             let why = if dead.contains(&joint) {
                 Some(Why::Dead)
             } else {
+                let of_another_kind = || of_another_kind(motions, rigid, scales, joint);
                 idle(inputs, joint)
                     .map(Why::Idle)
-                    .or_else(|| of_another_kind(motions, rigid, scales, joint))
+                    .or_else(|| by_model.then(of_another_kind).flatten())
             };
             Some((joint, why?))
         })

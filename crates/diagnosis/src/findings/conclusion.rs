@@ -94,7 +94,7 @@ impl Conclusion {
         }
         let fit = fit(last);
         let located = locate(data, table, &data.nominal, residual);
-        let mut unexplained = unexplained(last, &transients, &located);
+        let mut unexplained = unexplained(last, &fit, &transients, &located);
         let has_findings = !findings.is_empty();
         poorly_predicted(last, &fit, has_findings, &mut unexplained);
         if !not_enough_data.is_empty() {

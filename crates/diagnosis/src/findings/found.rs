@@ -51,7 +51,12 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     };
     let last_link = as_last_link(last, member.candidate);
     let mut list = Vec::new();
-    for (k, named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
+    for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
+        if let Some(start) = named.parameters.get_mut("start") {
+            let shift = to_its_clock(last, candidate);
+            start.value += shift;
+            start.ci95 = start.ci95.map(|end| end + shift);
+        }
         let share = if k == 0 {
             member.share()
         } else {
@@ -123,6 +128,14 @@ fn rotor_share(last: &FinalFit, candidate: &Candidate) -> f64 {
     rotor.retain(|&column| table.terms[column].is(&ACCELERATION));
     let torque = table.torque(joint, &rotor, &last.judged.named.fit.values(&rotor));
     data.share(joint, table.spread(joint, &data.fitted, &torque))
+}
+
+/// What must be added to a time of a contact, so that it is on the clock of its recording (s).
+fn to_its_clock(last: &FinalFit, candidate: &Candidate) -> f64 {
+    let motions = &last.study.data.motions;
+    let window = candidate.window(&last.study.table);
+    let at = window.and_then(|[from, to]| motions.recording_at(0.5 * (from + to)));
+    at.map_or(0.0, |at| motions.own_time(at, 0.0))
 }
 
 fn place(last: &FinalFit, candidate: &Candidate) -> Place {

@@ -60,6 +60,9 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         }
         text.push_str(rest);
     }
+    if let Some(recording) = &finding.place.recording {
+        text += &format!(", in {recording}");
+    }
     if is_undetermined(finding) {
         text.push_str(", of a size that these recordings do not determine");
     }

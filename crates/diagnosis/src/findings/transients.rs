@@ -268,8 +268,17 @@ impl Residuals<'_> {
         Some(Finding {
             parameters: BTreeMap::from([
                 ("force", exactly(force.norm(), spread, "N")),
-                ("start", exactly(from, CONTACT_START, "s")),
-                ("duration", exactly(to - from, CONTACT_DURATION, "s")),
+                (
+                    "start",
+                    exactly(data.motions.own_time(source, from), CONTACT_START, "s"),
+                ),
+                (
+                    "duration",
+                    Parameter {
+                        ci95: [(to - from - CONTACT_DURATION).max(0.0), to - from + CONTACT_DURATION],
+                        ..exactly(to - from, CONTACT_DURATION, "s")
+                    },
+                ),
             ]),
             share: share_by_joint.values().copied().fold(0.0, f64::max),
             share_by_joint,

@@ -15,8 +15,14 @@ use crate::thresholds::{
     LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
 };
 
-/// The structured residuals on each joint that no effect in the catalogue explains; `located` are the places of the nominal residual.
-pub fn unexplained(last: &FinalFit, transients: &Transients, located: &[Located]) -> Vec<Unexplained> {
+/// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
+/// `fit`; `located` are the places of the nominal residual.
+pub fn unexplained(
+    last: &FinalFit,
+    fit: &BTreeMap<String, JointFit>,
+    transients: &Transients,
+    located: &[Located],
+) -> Vec<Unexplained> {
     let FinalFit { study, judged, .. } = last;
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, Dependence)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
@@ -34,6 +40,12 @@ pub fn unexplained(last: &FinalFit, transients: &Transients, located: &[Located]
         entry.0 = entry.0.hypot(member.share());
         if !entry.1.iter().any(|(_, known)| *known == on) {
             entry.1.push((member.share(), on));
+        }
+    }
+    // Forms that compensate each other are larger together than what they explain.
+    for (&joint, (share, _)) in &mut by_joint {
+        if let Some(fit) = fit.get(&study.data.arm.joints()[joint].name) {
+            *share = share.min(error(fit).max(fit.train_nrmse_augmented));
         }
     }
     let mut in_transients = transients.unexplained.clone();

@@ -138,7 +138,19 @@ pub fn diagnosed_with(
         .enumerate()
         .map(|(variant, seconds)| regular(&recorded(robot, variant, seconds, injected)))
         .collect();
-    diagnose(believed, &inputs(&recordings), options, &|_| {})
+    let diagnosis = diagnose(believed, &inputs(&recordings), options, &|_| {})?;
+    for open in diagnosis.report.unexplained.iter().filter(|open| open.time.is_empty()) {
+        let fit = &diagnosis.report.fit[&open.joint];
+        let error = fit
+            .held_out_nrmse_augmented
+            .unwrap_or(0.0)
+            .max(fit.train_nrmse_augmented);
+        assert!(
+            open.share <= error,
+            "a part is larger than the whole: {open:?}, {fit:?}"
+        );
+    }
+    Ok(diagnosis)
 }
 
 /// Recordings a, b, c, d, of which c is held out.

@@ -22,7 +22,7 @@ static SPEC: Spec = Spec {
     sentence: "a force of {force} on the tool for {duration}, from {start} on",
     scope: Scope::Arm,
     parameters: &[
-        Parameter::new("start", Quantity::Time),
+        Parameter::new("start", Quantity::Time).remarked("s, on the clock of its recording"),
         Parameter::new("duration", Quantity::Time).within(Range::Positive),
         Parameter::new("force", Quantity::Force)
             .of(Shape::List(3, &["force_x", "force_y", "force_z"]))

@@ -5,6 +5,7 @@ use maud::{Markup, html};
 
 use super::table::{brief_table, number, words as text};
 use super::{Page, Section, key};
+use crate::doubts::Certainty;
 use crate::{alternatives, doubts, numbers, terminal, words};
 
 impl Page<'_> {
@@ -77,24 +78,24 @@ impl Page<'_> {
     /// Doubts about units, signs, order or zeros, with the column maps that correct them.
     pub(super) fn doubts(&self) -> Option<Section> {
         let title = html! { "Units, signs, order or zeros first" };
-        self.doubted(&self.report.doubts, "units", title)
+        self.doubted(&self.report.doubts, Certainty::Certain, "units", title)
     }
 
     /// What contradicts the URDF and does not prevent the diagnosis.
     pub(super) fn warnings(&self) -> Option<Section> {
         let title = html! { "Recordings that contradict the URDF" };
-        self.doubted(&self.report.warnings, "contradictions", title)
+        self.doubted(&self.report.warnings, Certainty::Possible, "contradictions", title)
     }
 
-    fn doubted(&self, doubts: &[Doubt], id: &'static str, title: Markup) -> Option<Section> {
+    fn doubted(&self, doubts: &[Doubt], certainty: Certainty, id: &'static str, title: Markup) -> Option<Section> {
         if doubts.is_empty() {
             return None;
         }
         let body = html! {
-            @for group in doubts::groups(doubts, self.report) {
+            @for group in doubts::groups(doubts, certainty, self.report) {
                 ul.steps { @for sentence in &group.texts { li { (sentence) "." } } }
                 @if let Some(map) = group.map {
-                    p { (coded(group.usage)) }
+                    p { (coded(&group.usage)) }
                     pre { code { (map) } }
                 }
             }
@@ -149,7 +150,7 @@ impl Page<'_> {
             p.small.soft {
                 "Share: standard deviation of the effect's torque over the standard deviation of the measured torque. The error is \
                  the RMS torque error over the standard deviation of the measured torque, with the nominal model → with all effects \
-                 found; held-out recordings are not used in any fit. The error belongs to the joint and is repeated for each of its \
+                 found. No effect is fitted to a held-out recording, except a contact that acts in it. The error belongs to the joint and is repeated for each of its \
                  findings."
             }
         };

@@ -125,6 +125,16 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
             possible[0] = best;
         }
     }
+    // One joint whose position exceeds its limits may be the only one in that unit.
+    if let (Some(smooth), [one], Some(unit)) = (smooth, &evident[..], possible.first())
+        && by_velocity.is_none()
+        && let Some(at) = arm.joints().iter().position(|joint| joint.name == one.0.name)
+    {
+        let score = |correction| fit(arm, smooth, correction).score();
+        if score(Correction::UnitOf(at, unit.2)) < score(Correction::Unit(unit.2)) {
+            return Vec::new();
+        }
+    }
     let shown = evident.first().or(moving.first().as_ref()).map(|pair| **pair);
     let Some((joint, measured)) = shown else {
         return Vec::new();
