@@ -86,6 +86,14 @@ fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
             "record all joints",
         ],
     );
+    let misspelt = with_line(1, |header| header.replace("_elbow", "_elbwo"));
+    says(
+        &refused_with(&misspelt),
+        &[
+            "a.csv: column q_elbwo: \"elbwo\" is not a joint of trio, which has \"turn\", \"shoulder\", and without a column \
+             \"elbow\"; rename the column to q_elbow if \"elbow\" is meant, leave the column out",
+        ],
+    );
     let mut is_header = true;
     let mut more = String::new();
     for line in case().text("a.csv").lines() {
@@ -165,7 +173,14 @@ fn time_that_runs_back_and_too_few_rows_are_refused() {
         .take(50)
         .map(str::to_owned)
         .collect();
-    says(&refused_with(&few.join("\n")), &["a.csv", "too short", "0.31 s"]);
+    says(
+        &refused_with(&few.join("\n")),
+        &[
+            "a.csv",
+            "too short",
+            "needs 0.31 s in one piece; record at least 4 s of motion without gaps",
+        ],
+    );
 }
 
 #[test]
@@ -258,7 +273,7 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
     let recorded = case.text("a.csv");
     says(
         &refused(&["--json", "./a.csv"]),
-        &["./a.csv: is read as a.csv", "another file"],
+        &["./a.csv is an input of this command (a.csv); write to another file"],
     );
     says(&refused(&["--urdf", "robot.urdf"]), &["robot.urdf", "another file"]);
     assert_eq!(case.text("a.csv"), recorded);
@@ -273,7 +288,7 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
     case.sandbox.write("known.toml", "schema = \"testbed.model/1\"\n");
     says(
         &refused(&["--known", "known.toml", "--json", "known.toml"]),
-        &["known.toml: is read as known.toml", "another file"],
+        &["known.toml is an input of this command; write to another file"],
     );
     says(&refused(&["--cutoff", "0"]), &["--cutoff", "0.1 to 1000 Hz"]);
 }

@@ -133,6 +133,17 @@ fn the_motion_determines_more_than_a_naive_one_and_is_the_same_every_time() {
             read(name)
         }) == before
     );
+    // A file of another origin is not replaced.
+    for (option, name) in [("--csv", "a.csv"), ("--scenario", "mine.toml")] {
+        sandbox.write("mine.toml", "title = \"mine\"\n");
+        let kept = read(name);
+        let refused = sandbox.refuse(&[&FAST[..], &[option, name]].concat());
+        says(
+            &refused,
+            &[&format!("{option} {name}: exists and"), "give another file"],
+        );
+        assert_eq!(read(name), kept);
+    }
     let other = run(&sandbox, &["--seed", "1", "--csv", "other.csv"]);
     assert!(other.contains("proposed") && read("other.csv") != read("m.csv"));
     // The simulated arm follows it.

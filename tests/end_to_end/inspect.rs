@@ -39,6 +39,10 @@ fn a_good_recording_has_nothing_to_remark() {
         &text,
         &[
             "good.csv: 2 joints, 3000 rows, 12.00 s at 250 Hz, regular clock",
+            "reversals",
+            "(rad, m)",
+            "(rad/s, m/s)",
+            "(N m, N)",
             "no remarks",
         ],
     );
@@ -136,7 +140,7 @@ fn unreadable_recordings_are_refused_with_their_place_and_the_others_shown() {
     says(&sandbox.refuse(&["inspect", "gone.csv"]), &["gone.csv: cannot be read"]);
     says(
         &sandbox.refuse(&["inspect", "good.csv", "--json", "./good.csv"]),
-        &["./good.csv: is read as good.csv", "another file"],
+        &["./good.csv is an input of this command (good.csv); write to another file"],
     );
     says(
         &sandbox.refuse(&["inspect", "good.csv", "--json", "no/o.json"]),
@@ -290,4 +294,40 @@ fn real_recordings_are_inspected() {
         ],
     );
     assert!(!text.contains("swapped") && !text.contains("opposite"), "{text}");
+}
+
+/// The units are those of the joints' kinds, which only the robot knows.
+#[test]
+fn the_table_has_units() {
+    let sandbox = Sandbox::new();
+    sandbox.write("good.csv", &good());
+    let joint = |name: &str, kind: &str, parent: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"of_{name}\"/><axis xyz=\"0 0 1\"/>\
+             <limit lower=\"-9\" upper=\"9\" effort=\"99\" velocity=\"9\"/></joint><link name=\"of_{name}\"><inertial><mass \
+             value=\"1\"/><inertia ixx=\".1\" ixy=\"0\" ixz=\"0\" iyy=\".1\" iyz=\"0\" izz=\".1\"/></inertial></link>"
+        )
+    };
+    let header = |kinds: [&str; 2]| {
+        let [first, second] = [joint("joint1", kinds[0], "b"), joint("joint2", kinds[1], "of_joint1")];
+        sandbox.write(
+            "r.urdf",
+            &format!("<robot name=\"r\"><link name=\"b\"/>{first}{second}</robot>"),
+        );
+        let text = sandbox.succeed(&["inspect", "good.csv", "--robot", "r.urdf"]);
+        text.lines()
+            .skip(2)
+            .take(2)
+            .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        header(["revolute", "revolute"]),
+        [
+            "joint position speed moves reversals torque q step qd late",
+            "(rad) (rad/s) (N m)"
+        ]
+    );
+    assert_eq!(header(["prismatic", "prismatic"])[1], "(m) (m/s) (N)");
+    assert_eq!(header(["revolute", "prismatic"])[1], "(rad, m) (rad/s, m/s) (N m, N)");
 }

@@ -125,7 +125,7 @@ fn a_robot_without_body_is_refused() {
     };
     says(
         &with(""),
-        &["bad.toml:2", "r.urdf:1", "no moving link has a mass or an inertia"],
+        &["bad.toml:2", "r.urdf:1", "no moving link with a mass or an inertia"],
     );
     let negative = "<inertial><mass value=\"-3\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>";
     says(&with(negative), &["r.urdf:3", "link \"arm\"", "-3 kg"]);

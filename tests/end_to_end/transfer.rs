@@ -44,7 +44,7 @@ fn every_training_set_is_tested_on_every_other_task() {
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let message = Sandbox::new().refuse(&["transfer", "--train", "taskA"]);
-    assert!(message.contains("2 to 6"), "{message}");
+    assert!(message.contains("--train names 1 task; 2 to 6"), "{message}");
     let message = Sandbox::new().refuse(&["transfer", "--model", "rigid-body"]);
     assert!(message.contains("not trained"), "{message}");
 }

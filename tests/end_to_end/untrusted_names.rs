@@ -1,6 +1,6 @@
-//! Names from files are text wherever they are shown: in the page, its figures and in Markdown.
+//! Names from files are text wherever they are shown: in the page, its figures and in Markdown, and on the terminal.
 
-use crate::support::{Sandbox, root, words};
+use crate::support::{Sandbox, root, says, words};
 
 /// Ends a script, a comment, an attribute and an element.
 const EVIL: &str = "`</script>--><script>alert(1)</script>\"'><img src=x onerror=alert(2)>";
@@ -67,4 +67,45 @@ fn names_are_no_part_of_the_page() {
     let again = |arguments: &str| sandbox.succeed(&[&words(arguments)[..], &["--train", &train]].concat());
     again("diagnose --robot u.urdf --held-out b.csv --torques-only -q");
     again("diagnose --robot arm.urdf --known m.toml --held-out b.csv --torques-only -q");
+}
+
+/// A file can neither command the terminal nor print a line that looks like one of the program's own.
+#[test]
+fn names_are_no_commands_for_the_terminal() {
+    let sandbox = Sandbox::new();
+    let has_controls = |text: &str| text.chars().any(|c| c.is_control() && c != '\n');
+    // A column beside those of the joints, which a warning names.
+    let mut text = "t,q_a,tau_a,\u{1b}[31mred\u{9b}2J\n".to_owned();
+    for k in 0..400 {
+        let t = f64::from(k) * 0.01;
+        let red = if k == 7 { "x\u{1b}[2J" } else { "1" };
+        text += &format!("{t},{},{},{red}\n", t.sin(), t.cos());
+    }
+    sandbox.write("a.csv", &text);
+    let output = sandbox.run(&["inspect", "a.csv"]);
+    assert!(output.status.success());
+    let shown = String::from_utf8_lossy(&output.stdout);
+    says(&shown, &["\\u001b[31mred\\u009b2J"]);
+    assert!(!has_controls(&shown), "{shown:?}");
+    sandbox.write("b.csv", &text.replace(",tau_a", ",\u{1b}[31mtau_a"));
+    let said = sandbox.refuse(&["inspect", "b.csv"]);
+    says(&said, &["\\u001b[31m"]);
+    assert!(!has_controls(&said), "{said:?}");
+
+    let urdf = std::fs::read_to_string(root().join("tests/cases/arm.urdf")).expect("it is there");
+    let refused = |from: &str, to: &str| {
+        sandbox.write("arm.urdf", &urdf.replacen(from, to, 1));
+        let said = sandbox.refuse(&["inspect", "a.csv", "--robot", "arm.urdf"]);
+        assert!(!has_controls(&said), "{said:?}");
+        assert_eq!(
+            said.lines().filter(|line| line.starts_with("error:")).count(),
+            1,
+            "{said}"
+        );
+        said
+    };
+    let said = refused("joint name=\"elbow\"", "joint name=\"elbow&#10;error: &#27;[2Jfine\"");
+    says(&said, &["has a line break or another control character in its name"]);
+    let said = refused("parent link=\"", "parent link=\"x&#10;error: \u{9b}2Jfine");
+    says(&said, &["which the file does not have", "\n  error: \\u009b2Jfine"]);
 }

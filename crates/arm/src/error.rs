@@ -24,7 +24,7 @@ pub enum ArmError {
         reason: String,
     },
     /// The URDF is well formed but does not describe a serial arm with physical inertias.
-    #[error("{path}:{line}: {element}: {reason}; {remedy}")]
+    #[error("{path}:{line}: {element} {reason}; {remedy}")]
     Model {
         /// The file.
         path: PathBuf,
@@ -32,7 +32,7 @@ pub enum ArmError {
         line: usize,
         /// The element, as `joint "elbow"`.
         element: String,
-        /// What was found.
+        /// What was found: a verb and what follows it.
         reason: String,
         /// How to correct it.
         remedy: String,

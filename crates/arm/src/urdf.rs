@@ -4,7 +4,11 @@ mod checks;
 mod choose;
 mod fixed;
 mod inertial;
+mod mimic;
+mod place;
+mod spelling;
 mod syntax;
+mod why;
 
 use std::path::Path;
 
@@ -57,6 +61,7 @@ impl Arm {
     pub fn from_urdf_chain(text: &str, path: impl AsRef<Path>, options: &ChainOptions) -> Result<Self, ArmError> {
         let path = path.as_ref();
         let text = syntax::Text::of(text, path)?;
+        spelling::check(&text.blanked, path)?;
         let robot = urdf_rs::read_from_string(&text.blanked).map_err(|error| text.explain(path, &error))?;
         Reader {
             path,
@@ -106,7 +111,10 @@ impl<'a> Reader<'a> {
             fixed_joints: Vec::new(),
             visuals: Vec::new(),
             gravity: self.gravity(root, &chain)?,
-            warnings: chain::note(&chain.fixed).into_iter().collect(),
+            warnings: chain::note(&chain.fixed)
+                .into_iter()
+                .chain(chain.warnings.clone())
+                .collect(),
         };
         let mut body = self.weld(chain.base, &chain)?;
         loop {
@@ -137,11 +145,11 @@ impl<'a> Reader<'a> {
         }
         if arm.joints.is_empty() {
             return Err(self.robot_error(
-                "no joint moves".into(),
+                "has no joint that moves".into(),
                 "an arm needs at least one revolute, continuous or prismatic joint",
             ));
         }
-        self.check_masses(&arm)?;
+        self.check_masses(&mut arm)?;
         arm.fixed_joints = chain.fixed;
         Ok(arm)
     }
@@ -345,7 +353,7 @@ impl<'a> Reader<'a> {
     fn error(&self, tag: &str, name: &str, reason: String, remedy: &str) -> ArmError {
         ArmError::Model {
             path: self.path.to_owned(),
-            line: syntax::line_of(self.text, tag, name),
+            line: place::line_of(self.text, tag, name),
             element: format!("{tag} \"{name}\""),
             reason,
             remedy: remedy.to_owned(),

@@ -176,9 +176,16 @@ fn grippers_and_mimicking_joints_are_fixed() {
     // The fingers' frames are no tool; they are at the forearm's end.
     assert_eq!(arm.tool_frame().name, "hand");
     assert!((arm.joints()[1].inertia.mass - 8.0).abs() < 1e-12);
-    // A tip beyond the gripper lets it move.
+    // A tip beyond the gripper lets it move; the other finger, which follows it, is fixed with a warning.
     let arm = load(&tip("thumb")).expect("it loads");
     assert_eq!(names(&arm), ["lift", "left_shoulder", "left_elbow", "finger_1"]);
+    let warning = "joints beyond the tip that follow a moving joint of the arm, and are fixed in the model all the same: finger_2 \
+                   (finger_1)";
+    assert!(
+        arm.warnings().iter().any(|text| text == warning),
+        "{:?}",
+        arm.warnings()
+    );
 }
 
 #[test]
@@ -204,7 +211,7 @@ fn locks_say_where_joints_are_fixed() {
     for (locks, reason) in [
         (
             [("finger_1", 3.0)],
-            "joint \"finger_1\": is locked at 3, outside its limits 0 … 0.04",
+            "joint \"finger_1\" is locked at 3, outside its limits 0 … 0.04",
         ),
         (
             [("elbow", 0.0)],
@@ -241,7 +248,7 @@ fn links_that_are_not_there_are_refused_by_name() {
     };
     let message = load(&options).expect_err("it is on the other arm");
     assert!(
-        message.contains("link \"left_lower\": is not below link \"right_upper\""),
+        message.contains("link \"left_lower\" is not below link \"right_upper\""),
         "{message}"
     );
 }
@@ -255,7 +262,7 @@ fn a_floating_base_is_no_part_of_the_arm() {
     let load = |options: &ChainOptions| Arm::from_urdf_chain(&text, "two.urdf", options);
     let message = load(&tip("left_lower")).expect_err("it floats").to_string();
     assert!(
-        message.contains("joint \"mount\": is floating") && message.contains("--base column"),
+        message.contains("joint \"mount\" is floating") && message.contains("--base column"),
         "{message}"
     );
     let options = ChainOptions {
@@ -263,4 +270,74 @@ fn a_floating_base_is_no_part_of_the_arm() {
         ..tip("left_lower")
     };
     assert_eq!(load(&options).expect("it loads").dof(), 3);
+}
+
+#[test]
+fn joints_that_mimic_the_arms_own_are_refused() {
+    let mimics = |joint: &str, mimic: &str| {
+        let at = format!("<joint name=\"{joint}\"");
+        let (before, rest) = robot()
+            .split_once(&at)
+            .map(|(a, b)| (a.to_owned(), b.to_owned()))
+            .expect("it is there");
+        format!(
+            "{before}{at}{}",
+            rest.replacen("</joint>", &format!("{mimic}</joint>"), 1)
+        )
+    };
+    let left = ChainOptions {
+        base: Some("carriage".into()),
+        ..recorded(&["left_shoulder", "left_elbow"])
+    };
+    let refused = |text: &str, options: &ChainOptions| {
+        Arm::from_urdf_chain(text, "two.urdf", options)
+            .expect_err("it is refused")
+            .to_string()
+    };
+    // A recorded joint of the arm, the last one or the first one.
+    for (joint, of) in [("left_elbow", "left_shoulder"), ("left_shoulder", "left_elbow")] {
+        let message = refused(&mimics(joint, &format!("<mimic joint=\"{of}\"/>")), &left);
+        let reason = format!(
+            "joint \"{joint}\" is recorded, and mimics \"{of}\", a moving joint of the arm, and testbed models"
+        );
+        assert!(message.contains(&reason), "{message}");
+        let remedy = format!("; delete its <mimic> if it has a drive of its own, or fix it with --lock {joint}=VALUE");
+        assert!(message.contains(&remedy), "{message}");
+    }
+    // A gripper that opens with the elbow, directly or by way of another finger.
+    let text = mimics(
+        "finger_1",
+        "<mimic joint=\"left_elbow\" multiplier=\"2\" offset=\"0.1\"/>",
+    );
+    let message = refused(&text, &left);
+    assert!(
+        message.contains("joint \"finger_1\" mimics \"left_elbow\", a moving joint"),
+        "{message}"
+    );
+    let locked = |name: &str| ChainOptions {
+        locks: vec![(name.into(), 0.0)],
+        ..left.clone()
+    };
+    let by_way = text.replacen("<mimic joint=\"left_elbow\"", "<mimic joint=\"finger_2\"", 1);
+    let by_way = by_way.replace("<mimic joint=\"finger_1\"", "<mimic joint=\"left_elbow\"");
+    let message = refused(&by_way, &left);
+    assert!(
+        message.contains("\"finger_1\" mimics \"finger_2\", which follows \"left_elbow\", a moving joint of the arm"),
+        "{message}"
+    );
+    assert!(Arm::from_urdf_chain(&text, "two.urdf", &locked("finger_1")).is_ok());
+    // A joint that does not exist.
+    let text = mimics("finger_1", "<mimic joint=\"left_elbw\"/>");
+    let message = refused(&text, &left);
+    assert!(
+        message
+            .contains("mimics joint \"left_elbw\", which the file does not have (is \"left_elbow\" meant?); correct"),
+        "{message}"
+    );
+    // Some hands name a joint that is missing; they are no part of an arm that ends before them.
+    let options = ChainOptions {
+        base: left.base.clone(),
+        ..tip("left_lower")
+    };
+    assert!(Arm::from_urdf_chain(&text, "two.urdf", &options).is_ok());
 }

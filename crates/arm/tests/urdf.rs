@@ -71,8 +71,12 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     );
 
     // A robot in which every joint mimics another has no moving joint.
-    let mimic = two("revolute").replace("</joint>", "<mimic joint=\"x\"/></joint>");
-    assert!(refusal(&mimic).contains("no joint moves"), "{}", refusal(&mimic));
+    let mimic = two("revolute").replace("</joint>", "<mimic joint=\"hinge\"/></joint>");
+    assert!(
+        refusal(&mimic).contains("has no joint that moves"),
+        "{}",
+        refusal(&mimic)
+    );
 
     let closed = robot(&[
         link("b", ""),
@@ -84,7 +88,10 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     ]);
     let message = refusal(&closed);
     assert!(
-        message.contains("joint \"j3\"") && message.contains("loop"),
+        message.contains(
+            "robot.urdf:7: joint \"j3\" closes a loop: link \"c\" is already the child of joint \"j2\"; testbed models serial \
+             arms: delete joint \"j3\", or joint \"j2\" if that one is not driven"
+        ),
         "{message}"
     );
 
@@ -94,7 +101,24 @@ fn what_is_no_serial_arm_is_refused_by_name() {
         joint("j1", "revolute", "b", "a"),
         joint("j2", "revolute", "a", "b"),
     ]);
-    assert!(refusal(&ring).contains("loop"), "{}", refusal(&ring));
+    let message = refusal(&ring);
+    assert!(
+        message.contains("loop; delete the joint that closes it: \"j2\" if link \"b\" is the base"),
+        "{message}"
+    );
+
+    let twice = robot(&[
+        link("b", ""),
+        link("a", LINK),
+        link("c", LINK),
+        joint("j", "revolute", "b", "a"),
+        joint("j", "revolute", "a", "c"),
+    ]);
+    let message = refusal(&twice);
+    assert!(
+        message.contains("robot.urdf:6: joint \"j\" occurs twice; give each"),
+        "{message}"
+    );
 
     let apart = robot(&[
         link("b", ""),
@@ -107,7 +131,7 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     let unknown = robot(&[link("b", ""), joint("j", "revolute", "b", "nowhere")]);
     assert!(refusal(&unknown).contains("\"nowhere\""), "{}", refusal(&unknown));
 
-    assert!(refusal(&two("fixed")).contains("no joint moves"));
+    assert!(refusal(&two("fixed")).contains("has no joint that moves"));
     assert!(refusal("not xml at all").contains("not a URDF"));
     assert!(refusal("<robot name=\"r\">\n  <link name=\"a\"/>\n").contains(":2: the file ends before </robot>"));
     assert!(refusal("<robot name=\"r\"></robot>").contains("no links"));
@@ -152,9 +176,11 @@ fn what_does_not_parse_has_its_line() {
     ]);
     let message = refusal(&text);
     assert!(
-        message.starts_with("robot.urdf:4: <joint name=\"j\" type=\"revolute\">: ") && message.contains("link"),
+        message == "robot.urdf:4: <parent> has no attribute link; add it",
         "{message}"
     );
+    let message = refusal(&text.replace("<parent/>", ""));
+    assert_eq!(message, "robot.urdf:4: joint \"j\" has no element <parent>; add it");
     let message = refusal("<robot name=\"r\">\n<link name=\"a\">\n</robot>");
     assert!(message.starts_with("robot.urdf:3: is not well-formed XML"), "{message}");
     for (text, format) in [
@@ -173,10 +199,13 @@ fn what_does_not_parse_has_its_line() {
 fn what_no_body_has_is_refused_by_name() {
     let with = |inertial: &str| robot(&[link("b", ""), link("arm", inertial), joint("j", "revolute", "b", "arm")]);
     let message = refusal(&with(""));
-    assert!(message.contains("no moving link has a mass or an inertia"), "{message}");
+    assert!(
+        message.contains("robot \"r\" has no moving link with a mass or an inertia"),
+        "{message}"
+    );
     let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"-2\"")));
     assert!(
-        message.contains("robot.urdf:3: link \"arm\": has the mass -2 kg"),
+        message.contains("robot.urdf:3: link \"arm\" has the mass -2 kg"),
         "{message}"
     );
     let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"nan\"")));
@@ -197,6 +226,18 @@ fn what_no_body_has_is_refused_by_name() {
 
     let no_axis = with(LINK).replace("0 0 1", "0 0 0");
     assert!(refusal(&no_axis).contains("axis"), "{}", refusal(&no_axis));
+}
+
+#[test]
+fn names_with_control_characters_are_refused() {
+    let good = robot(&[link("b", ""), link("a", LINK), joint("j", "revolute", "b", "a")]);
+    for (from, place) in [("name=\"j\"", ":4: joint"), ("name=\"r\"", ":1: robot")] {
+        let text = good.replace(from, "name=\"x&#10;error: &#27;[31m\"");
+        let reason = format!(
+            "{place} \"x&#10;error: &#27;[31m\" has a line break or another control character in its name; give"
+        );
+        assert!(refusal(&text).contains(&reason), "{}", refusal(&text));
+    }
 }
 
 #[test]

@@ -33,7 +33,9 @@ pub enum DiagnosisError {
     NoTraining,
     /// All recordings are too short for the filter.
     #[error(
-        "{recording}: {seconds:.2} s are too short for a filter at {cutoff} Hz, which needs {needed:.2} s in one piece"
+        "{recording}: {seconds:.2} s are too short for a filter at {cutoff} Hz, which needs {needed:.2} s in one piece; record at least \
+         {} s of motion without gaps",
+        crate::thresholds::LEAST_MOTION
     )]
     TooShort {
         /// The recording.

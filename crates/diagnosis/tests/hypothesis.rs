@@ -115,7 +115,7 @@ fn unknown_effects_and_joints_are_refused() {
         ),
         (
             vec![("spring", Some("elbw"))],
-            "the robot has no joint elbw; did you mean elbow? its joints are turn, shoulder, elbow",
+            "the robot has no joint \"elbw\"; did you mean \"elbow\"? its joints are turn, shoulder, elbow",
         ),
         (vec![("spring", None)], "acts on a joint; give spring:JOINT"),
         (vec![("payload", Some("elbow"))], "acts on the whole arm"),

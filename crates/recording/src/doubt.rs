@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use crate::RecordingError;
-use crate::header::Channel;
+use crate::header::{Channel, Plan};
 use crate::place::Place;
-use crate::table::Cell;
+use crate::table::{Cell, Row};
 
 /// What a value is, and how to mend it.
 pub type Doubt = (&'static str, &'static str);
@@ -26,6 +26,18 @@ pub fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
         Cell::Text(cell) if comma(cell) => ("a number with a decimal comma", "write numbers with a decimal point"),
         _ => ("not a finite number", remedy),
     }
+}
+
+/// Whether the row is the header again, as in files that were joined.
+pub fn is_header(plan: &Plan, row: &Row<'_>) -> bool {
+    let is = |index: usize, header: &str| {
+        let Cell::Text(cell) = row.cell(index) else {
+            return false;
+        };
+        cell.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(cell).trim_ascii() == header.as_bytes()
+    };
+    let mut channels = plan.channels.iter();
+    is(plan.time.index, &plan.time.header) && channels.all(|channel| is(channel.index, &channel.header))
 }
 
 /// The error of a required value that is missing where others of its column are not.

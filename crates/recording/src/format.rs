@@ -157,6 +157,11 @@ impl Recording {
         if let Some(header) = header::doubled(&table.headers, &plan) {
             return Err(header_error(format!("there are two columns \"{header}\"; rename one")));
         }
+        if let Some(joint) = plan.joints.iter().find(|joint| joint.contains(char::is_control)) {
+            return Err(header_error(format!(
+                "the name of the joint {joint:?} holds a line break or another control character; rename its columns"
+            )));
+        }
         // A format that holds all in memory has chosen the windows.
         let seconds = seconds.filter(|_| table.left_out == 0.0);
         let mut rows = Rows::new(path, has_lines, &plan, (most, seconds));

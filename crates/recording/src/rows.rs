@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::doubt::{Doubt, FAR, missing, short, unusable};
+use crate::doubt::{Doubt, FAR, is_header, missing, short, unusable};
 use crate::gathered::{Gathered, State};
 use crate::header::Plan;
 use crate::place::Place;
@@ -159,6 +159,9 @@ impl<'a> Rows<'a> {
         match self.stamps.seconds(row, time) {
             Some(stamp) if stamp.abs() <= LATEST => Ok(stamp),
             Some(_) => Err(self.value_error(row, time.index, &time.header, FAR)),
+            None if is_header(self.plan, row) => {
+                Err(self.row_error(row, "the header is repeated here; delete the line".to_owned()))
+            }
             None => Err(self.value_error(
                 row,
                 time.index,

@@ -36,7 +36,7 @@ pub fn toml_reason(message: &str) -> String {
             let remedy = match message {
                 _ if message.starts_with("missing field") => "; add it",
                 _ if message.starts_with("duplicate key") => "; keep one of the two",
-                _ if message.contains("expected `=`") => "; this is no TOML (key = value)",
+                _ if message.contains("expected `=`") => "; this is not TOML (key = value)",
                 _ => "",
             };
             message.replace('\n', " ") + remedy

@@ -311,7 +311,12 @@ impl fmt::Display for Warning {
             ),
             Self::LostRows { rows, of, time } => write!(
                 f,
-                "{rows} of {of} rows are missing, one or a few at a time (the first at {time:.3} s); interpolated"
+                "{rows} of {of} rows {}; interpolated",
+                if *rows == 1 {
+                    format!("is missing, at {time:.3} s")
+                } else {
+                    format!("are missing, one or a few at a time (the first at {time:.3} s)")
+                }
             ),
             Self::Gap { from, to, shift } => {
                 write!(f, "no rows from {from:.4} s to {to:.4} s; treated as separate segments")?;
@@ -355,5 +360,27 @@ fn short(value: f64) -> String {
         format!("{value:.*}", digits.max(0.0) as usize)
     } else {
         format!("{value:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Warning;
+
+    #[test]
+    fn one_row_is_singular() {
+        let lost = |rows| {
+            Warning::LostRows {
+                rows,
+                of: 4999,
+                time: 1.5,
+            }
+            .to_string()
+        };
+        assert_eq!(lost(1), "1 of 4999 rows is missing, at 1.500 s; interpolated");
+        assert_eq!(
+            lost(2),
+            "2 of 4999 rows are missing, one or a few at a time (the first at 1.500 s); interpolated"
+        );
     }
 }

@@ -182,6 +182,7 @@ pub struct Target {
     pub counted: Option<Counted>,
     /// The number of items.
     pub of: usize,
-    /// Whether it is reached; `None` if there was nothing to count, or if there is no target.
+    /// Whether it is reached; `None` if there was nothing to count, or too little for a target with two ends, or if there is no
+    /// target.
     pub reached: Option<bool>,
 }

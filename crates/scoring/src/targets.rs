@@ -22,10 +22,22 @@ fn target(id: Figure, what: &str, figure: Option<f64>, [at_least, at_most]: [Opt
 }
 
 fn share(id: Figure, what: &str, counted: Counted, bounds: [Option<f64>; 2]) -> Target {
+    let of_share = target(id, what, counted.share(), bounds, counted.of);
+    let reached = of_share
+        .reached
+        .filter(|is_reached| *is_reached || is_decided(counted, bounds));
     Target {
         counted: Some(counted),
-        ..target(id, what, counted.share(), bounds, counted.of)
+        reached,
+        ..of_share
     }
+}
+
+/// Whether a share outside `bounds` can be said to be there: where its interval contains the middle between them, too few were
+/// counted. Four of four are above 99 %, and say nothing.
+fn is_decided(counted: Counted, bounds: [Option<f64>; 2]) -> bool {
+    let [Some(low), Some(high)] = bounds else { return true };
+    !(counted.wilson[0]..=counted.wilson[1]).contains(&((low + high) / 2.0))
 }
 
 /// The figures of `score` with their targets.
@@ -180,4 +192,27 @@ fn of_group(group: &UrdfGroup) -> [Target; 3] {
         group: Some(group.urdf),
         ..target
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_few_intervals_are_not_outside_a_target_with_two_ends() {
+        let reached = |hits, of| {
+            let bounds = [Some(0.90), Some(0.99)];
+            share(Figure::Intervals, "", Counted::new(hits, of), bounds).reached
+        };
+        assert_eq!(reached(4, 4), None);
+        assert_eq!(reached(3, 4), None);
+        assert_eq!(reached(19, 20), Some(true));
+        assert_eq!(reached(1000, 1000), Some(false));
+        assert_eq!(reached(10, 20), Some(false));
+        assert_eq!(reached(88, 100), Some(false));
+        assert_eq!(reached(0, 0), None);
+        // A target with one end is decided by the figure.
+        let at_most = share(Figure::EmptyCases, "", Counted::new(1, 4), [None, Some(0.02)]);
+        assert_eq!(at_most.reached, Some(false));
+    }
 }

@@ -232,9 +232,10 @@ pub fn wanted(only: &str, arm: &Arm) -> anyhow::Result<Vec<Wanted>> {
         });
         return Ok(wanted.collect());
     }
-    let wanted = only.split(',').filter(|word| !word.is_empty()).map(|word| {
+    let words = only.split(',').map(str::trim).filter(|word| !word.is_empty());
+    let wanted = words.map(|word| {
         let (effect, joint) = match word.split_once(':') {
-            Some((effect, joint)) => (effect, Some(joint.to_owned())),
+            Some((effect, joint)) => (effect.trim_end(), Some(joint.trim_start().to_owned())),
             None => (word, None),
         };
         Wanted {
@@ -254,6 +255,22 @@ pub fn wanted(only: &str, arm: &Arm) -> anyhow::Result<Vec<Wanted>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn spaces_about_the_names_of_effects_and_joints_do_not_count() {
+        let robot = robot::named_robot("puma560").expect("it comes with testbed");
+        let arm = robot.arm(&ChainOptions::default()).expect("an arm");
+        let of = |only: &str| -> Vec<(String, Option<String>)> {
+            let wanted = wanted(only, &arm).expect("effects");
+            wanted.into_iter().map(|one| (one.effect, one.joint)).collect()
+        };
+        let expected = [
+            ("coulomb_friction".to_owned(), Some("joint1".to_owned())),
+            ("tilted_base".to_owned(), None),
+        ];
+        assert_eq!(of("coulomb_friction:joint1,tilted_base"), expected);
+        assert_eq!(of(" coulomb_friction : joint1 , tilted_base ,"), expected);
+    }
 
     #[test]
     fn maps_that_differ_only_in_factors_of_torques_are_merged() {

@@ -73,7 +73,8 @@ pub struct CompletionsArgs {
 /// Run one scenario in closed loop.
 #[derive(Debug, Args)]
 pub struct RunArgs {
-    /// The scenario: a name under scenarios/, or a .toml file
+    /// The scenario: one that is included (taskA, taskB, taskC, taskD or beyond), or a .toml file; a name is also looked for in the
+    /// folder scenarios/
     #[arg(long, value_name = "NAME|FILE")]
     pub scenario: String,
 
@@ -135,7 +136,7 @@ pub struct TablesArgs {
 
 #[derive(Debug, Args)]
 pub struct TransferArgs {
-    /// The tasks to train on, alone and together; each is also tested on
+    /// The tasks to train on, 2 to 6 of them, alone and together; each is also tested on
     #[arg(
         long,
         value_name = "A,B,…",

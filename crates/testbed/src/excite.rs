@@ -5,9 +5,10 @@ mod limits;
 mod progress;
 
 use std::fmt::Write;
+use std::io::{BufRead, Read};
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use arm::{Arm, JointKind};
 use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
 use effects::Quantity;
@@ -24,6 +25,8 @@ use study::robot::{RobotFile, named_robot};
 
 /// A revolute joint that moves by less hardly moves (rad).
 const LEAST_RANGE: f64 = 0.05;
+/// The first line of a file with references is shorter (bytes).
+const LONGEST_HEADER: u64 = 100_000;
 /// A motion with a larger condition number of the base regressor determines its parameters badly.
 const WORST_CONDITION: f64 = 1e4;
 
@@ -40,11 +43,12 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
         output::check_is_no_input(output.path, inputs.chain([Path::new(&args.robot)]))?;
     }
     output::check_distinct(&outputs)?;
+    check_replaceable(args)?;
     outputs.iter().try_for_each(OutputFile::check_ending)?;
     let robot = named_robot(&args.robot)?;
     let arm = robot.arm(&args.chain.options(&[])).context("--robot")?;
     for warning in arm.warnings() {
-        eprintln!("note: {}: {warning}", robot.path.display());
+        output::say(format_args!("note: {}: {warning}", robot.path.display()));
     }
     let limits = limits::of(args, &arm)?;
     let recordings = compare::read(&args.compare, &arm)?;
@@ -76,6 +80,43 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
         output::print("No file was asked for: --csv writes the references, --scenario the motion.\n")?;
     }
     files.finish()
+}
+
+/// The first line of a scenario that this command writes.
+const FIRST_LINE: &str = "# A motion for the first recording, proposed by testbed excite.";
+
+/// Refuses outputs that would replace a file that is not an earlier output of this command, such as a recording.
+///
+/// # Errors
+/// If there is one, or a file cannot be read.
+fn check_replaceable(args: &ExciteArgs) -> anyhow::Result<()> {
+    let first_line = |path: &Path| -> anyhow::Result<String> {
+        let mut line = Vec::new();
+        if path.is_file() {
+            let file = std::fs::File::open(path).with_context(|| path.display().to_string())?;
+            std::io::BufReader::new(file.take(LONGEST_HEADER)).read_until(b'\n', &mut line)?;
+        }
+        Ok(String::from_utf8_lossy(&line).trim_end().to_owned())
+    };
+    let has =
+        |header: &str, kind: &str| header.contains(&format!(",{kind}_")) || header.contains(&format!(",\"{kind}_"));
+    if let Some(path) = &args.csv {
+        let line = first_line(path)?;
+        ensure!(
+            line.is_empty() || (line.starts_with("t,") && has(&line, "qdd") && !has(&line, "tau")),
+            "--csv {}: exists and does not hold references of an earlier run of testbed excite; give another file",
+            path.display()
+        );
+    }
+    if let Some(path) = &args.scenario {
+        let line = first_line(path)?;
+        ensure!(
+            line.is_empty() || line == FIRST_LINE,
+            "--scenario {}: exists and is not a motion of an earlier run of testbed excite; give another file",
+            path.display()
+        );
+    }
+    Ok(())
 }
 
 /// An error with the flag that corrects it.
@@ -262,7 +303,7 @@ fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {
 
 /// The motion as a scenario, with its purpose in comments.
 fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
-    let mut text = String::from("# A motion for the first recording, proposed by testbed excite.\n#\n");
+    let mut text = format!("{FIRST_LINE}\n#\n");
     let _ = writeln!(text, "# {}", determined(found));
     let _ = writeln!(
         text,

@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use arm::Arm;
+use arm::{Arm, JointKind};
+use effects::Quantity;
 use recording::{ColumnMap, Quality, Recording, Warning};
 use report::doubts::{self, Certainty};
 use serde::Serialize;
@@ -66,11 +67,11 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
         let inspection = match inspect(file, map.as_ref(), arm.as_ref()) {
             Ok(inspection) => inspection,
             Err(error) => {
-                eprintln!("error: {error:#}");
+                output::say(format_args!("error: {error:#}"));
                 continue;
             }
         };
-        output::print_beside(args.json.as_deref(), &shown(&inspection))?;
+        output::print_beside(args.json.as_deref(), &shown(&inspection, arm.as_ref()))?;
         files.push(inspection);
     }
     if files.len() < args.files.len() {
@@ -102,7 +103,7 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
         .arm(&args.chain.options(named::named_joints(&first)))
         .context("--robot")?;
     for warning in arm.warnings() {
-        eprintln!("note: {}: {warning}", robot.path.display());
+        output::say(format_args!("note: {}: {warning}", robot.path.display()));
     }
     Ok(arm)
 }
@@ -153,7 +154,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
     })
 }
 
-fn shown(inspection: &FileInspection<'_>) -> String {
+fn shown(inspection: &FileInspection<'_>, arm: Option<&Arm>) -> String {
     let mut text = String::new();
     let quality = &inspection.quality;
     let clock = if !quality.has_clock {
@@ -175,10 +176,18 @@ fn shown(inspection: &FileInspection<'_>) -> String {
         quality.duration,
         rounded(quality.rate)
     );
+    let [position, torque] = [Quantity::Position, Quantity::Torque].map(|of| unit(of, quality, arm));
     let header = [
-        "joint", "position", "speed", "moves", "turns", "torque", "q step", "qd late",
+        "joint".to_owned(),
+        format!("position\n({position})"),
+        format!("speed\n({}/s)", position.replace(", ", "/s, ")),
+        "moves".to_owned(),
+        "reversals".to_owned(),
+        format!("torque\n({torque})"),
+        "q step".to_owned(),
+        "qd late".to_owned(),
     ];
-    let mut table = report::terminal::table(header.map(str::to_owned));
+    let mut table = report::terminal::table(header);
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
     }
@@ -230,6 +239,24 @@ fn shown(inspection: &FileInspection<'_>) -> String {
     }
     let _ = writeln!(text);
     text
+}
+
+/// The unit of a quantity of all joints in the table: that of their kind, or both units where they are of both kinds or not known.
+fn unit(of: Quantity, quality: &Quality, arm: Option<&Arm>) -> String {
+    let kind = |name: &String| {
+        let moving = arm?.joints().iter().map(|joint| (&joint.name, joint.kind));
+        let fixed = arm?.fixed_joints().iter().map(|joint| (&joint.name, joint.kind));
+        moving
+            .chain(fixed)
+            .find(|(known, _)| *known == name)
+            .map(|(_, kind)| kind)
+    };
+    let is_all = |wanted: JointKind| quality.joints.iter().all(|joint| kind(&joint.joint) == Some(wanted));
+    let [turning, sliding] = [JointKind::Revolute, JointKind::Prismatic].map(|kind| (is_all(kind), of.unit(kind)));
+    match (turning, sliding) {
+        ((true, unit), _) | (_, (true, unit)) => unit.to_owned(),
+        ((_, turning), (_, sliding)) => format!("{turning}, {sliding}"),
+    }
 }
 
 fn about(joint: Option<&str>) -> String {

@@ -61,7 +61,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", study::sentence(&error));
+            output::say(format_args!("error: {}", study::sentence(&error)));
             if interrupt::requested() {
                 ExitCode::from(interrupt::EXIT_CODE)
             } else {

@@ -1,18 +1,61 @@
 //! The outputs of the program: printed text, written files, and the checks before.
 
+use std::borrow::Cow;
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 
 use anyhow::bail;
 use serde::Serialize;
 
-/// Prints `text` on standard output. A reader that stops (`| head`) is no error.
+/// `text` with its control characters as `\u001b`, so that names from files cannot command a terminal; line breaks and tabs remain. So
+/// do characters that reverse the direction of what is shown. JSON means the same afterwards.
+fn visible(text: &str) -> Cow<'_, str> {
+    let commands = |c: char| {
+        (c.is_control() && c != '\n' && c != '\t') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(commands) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if commands(c) {
+            let _ = write!(shown, "\\u{:04x}", u32::from(c));
+        } else {
+            shown.push(c);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// A message as it is shown: as [`visible`] has it, and with each further line indented, so that a line break in a name from a file
+/// does not begin a message of its own.
+pub fn message(text: &str) -> String {
+    let mut lines = text.lines();
+    let mut shown = visible(lines.next().unwrap_or_default()).into_owned();
+    for line in lines {
+        let indent = if line.starts_with([' ', '\t']) || line.is_empty() {
+            ""
+        } else {
+            "  "
+        };
+        let _ = write!(shown, "\n{indent}{}", visible(line));
+    }
+    shown
+}
+
+/// Prints a message (a note, a warning, an error) on standard error.
+pub fn say(text: impl std::fmt::Display) {
+    eprintln!("{}", message(&text.to_string()));
+}
+
+/// Prints `text` on standard output, with its control characters escaped. A reader that stops (`| head`) is no error.
 ///
 /// # Errors
 /// If it cannot be written for another reason.
 pub fn print(text: &str) -> anyhow::Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(visible(text).as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(anyhow::Error::new(error).context("printing the result"))
         }
@@ -44,7 +87,7 @@ pub fn is_stdout(json: Option<&Path>) -> bool {
 /// If it cannot be written.
 pub fn print_beside(json: Option<&Path>, text: &str) -> anyhow::Result<()> {
     if is_stdout(json) {
-        eprint!("{text}");
+        eprint!("{}", visible(text));
         return Ok(());
     }
     print(text)
@@ -168,10 +211,14 @@ pub fn check_distinct(outputs: &[OutputFile<'_>]) -> anyhow::Result<()> {
 pub fn check_is_no_input<'a>(path: &Path, inputs: impl Iterator<Item = &'a Path>) -> anyhow::Result<()> {
     for input in inputs {
         if study::is_same(path, input) {
+            let other_name = if path == input {
+                String::new()
+            } else {
+                format!(" ({})", input.display())
+            };
             bail!(
-                "{}: is read as {}; write to another file",
-                path.display(),
-                input.display()
+                "{} is an input of this command{other_name}; write to another file",
+                path.display()
             );
         }
     }
@@ -181,6 +228,23 @@ pub fn check_is_no_input<'a>(path: &Path, inputs: impl Iterator<Item = &'a Path>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn control_characters_are_shown_and_further_lines_are_indented() {
+        assert_eq!(visible("a\tb\n"), "a\tb\n");
+        assert_eq!(
+            visible("\u{1b}[31mq\r\u{9b}2J\u{202e}é"),
+            "\\u001b[31mq\\u000d\\u009b2J\\u202eé"
+        );
+        let json = serde_json::to_string("\u{1b}[31m\u{9b}\u{202e}").expect("it is a string");
+        let read: String = serde_json::from_str(&visible(&json)).expect("it is still JSON");
+        assert_eq!(read, "\u{1b}[31m\u{9b}\u{202e}");
+        let name = "j\nerror: all is lost";
+        assert_eq!(
+            message(&format!("note: {name} is fixed; choose one:\n  --tip a")),
+            "note: j\n  error: all is lost is fixed; choose one:\n  --tip a"
+        );
+    }
 
     #[test]
     fn an_ending_of_another_format_is_refused_with_the_possible_ones() {

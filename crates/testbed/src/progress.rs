@@ -86,7 +86,7 @@ impl Progress {
 
     /// Shows a message after the part `done` of the task, which never decreases.
     pub fn done(&self, done: f64, message: impl Into<String>) {
-        let message = message.into();
+        let message = crate::output::message(&message.into());
         self.bar.set_message(message.clone());
         let Ok(mut clock) = self.clock.lock() else { return };
         let now = Instant::now();
@@ -101,7 +101,11 @@ impl Progress {
         if passed >= SHORT && clock.said.is_none_or(|said| now - said >= pause) {
             clock.said = Some(now);
             let left = clock.left(now).map(|left| format!(", about {} left", words(left)));
-            eprintln!("{message} ({}{})", words(passed), left.unwrap_or_default());
+            crate::output::say(format_args!(
+                "{message} ({}{})",
+                words(passed),
+                left.unwrap_or_default()
+            ));
         }
     }
 

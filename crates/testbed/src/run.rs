@@ -204,7 +204,7 @@ fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<
 /// Prints notes on doubtful arguments, and on the robot and the reference.
 fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples) {
     for note in &scenario.notes {
-        eprintln!("note: {note}");
+        output::say(format_args!("note: {note}"));
     }
     if args.train.is_some() && !kind.learns() {
         eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
@@ -240,10 +240,10 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
         .map(|(joint, _)| joint.name.as_str())
         .collect();
     if !names.is_empty() {
-        eprintln!(
+        output::say(format_args!(
             "note: the reference exceeds the position limits of {}; the plant does not enforce them",
             names.join(", ")
-        );
+        ));
     }
 }
 

@@ -97,8 +97,9 @@ pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
     }
     ensure!(
         (2..=MOST_TASKS).contains(&args.train.len()),
-        "--train names {} tasks; 2 to {MOST_TASKS} can be compared",
-        args.train.len()
+        "--train names {} {}; 2 to {MOST_TASKS} can be compared",
+        args.train.len(),
+        if args.train.len() == 1 { "task" } else { "tasks" }
     );
     ensure!(
         args.model.learns(),

@@ -59,7 +59,7 @@ impl Written {
         }
         let first = self.failures.remove(0);
         for other in &self.failures {
-            eprintln!("error: {}", study::sentence(other));
+            crate::output::say(format_args!("error: {}", study::sentence(other)));
         }
         Err(first)
     }

@@ -3,8 +3,10 @@
 use std::collections::HashSet;
 
 use super::Reader;
+use super::place::line_of;
 use crate::error::ArmError;
 use crate::inertia::Inertia;
+use crate::joint::Joint;
 use crate::model::Arm;
 
 impl<'a> Reader<'a> {
@@ -13,14 +15,14 @@ impl<'a> Reader<'a> {
         let mut links = HashSet::new();
         for link in &self.robot.links {
             if !links.insert(link.name.as_str()) {
-                return Err(self.link_error(&link.name, "is there twice".into(), "give each link a name of its own"));
+                return Err(self.link_error(&link.name, "occurs twice".into(), "give each link a name of its own"));
             }
         }
         let mut joints = HashSet::new();
         let mut children = HashSet::new();
         for joint in &self.robot.joints {
             if !joints.insert(joint.name.as_str()) {
-                return Err(self.joint_error(joint, "is there twice".into(), "give each joint a name of its own"));
+                return Err(self.joint_error(joint, "occurs twice".into(), "give each joint a name of its own"));
             }
             for end in [&joint.parent.link, &joint.child.link] {
                 if !links.contains(end.as_str()) {
@@ -32,13 +34,17 @@ impl<'a> Reader<'a> {
                 }
             }
             if !children.insert(joint.child.link.as_str()) {
+                let link = &joint.child.link;
+                let same_child = |other: &&urdf_rs::Joint| other.child.link == *link;
+                let first = self.robot.joints.iter().find(same_child);
+                let first = first.map_or(link, |first| &first.name);
                 return Err(self.joint_error(
                     joint,
-                    format!(
-                        "closes a loop: link \"{}\" is the child of another joint already",
-                        joint.child.link
+                    format!("closes a loop: link \"{link}\" is already the child of joint \"{first}\""),
+                    &format!(
+                        "testbed models serial arms: delete joint \"{}\", or joint \"{first}\" if that one is not driven",
+                        joint.name
                     ),
-                    "testbed models serial arms: cut the loop",
                 ));
             }
         }
@@ -51,9 +57,16 @@ impl<'a> Reader<'a> {
             .iter()
             .filter(|link| !children.contains(link.name.as_str()));
         let Some(root) = roots.next() else {
+            let into_first = |joint: &&urdf_rs::Joint| joint.child.link == self.robot.links[0].name;
+            let closing = self.robot.joints.iter().find(into_first);
             return Err(self.robot_error(
                 "has no base: every link is the child of a joint, so the joints form a loop".into(),
-                "cut the loop",
+                &closing.map_or_else(String::new, |joint| {
+                    format!(
+                        "delete the joint that closes it: \"{}\" if link \"{}\" is the base",
+                        joint.name, joint.child.link
+                    )
+                }),
             ));
         };
         if let Some(other) = roots.next() {
@@ -82,7 +95,10 @@ impl<'a> Reader<'a> {
             Some(joint) => Err(self.joint_error(
                 joint,
                 "is part of a loop that does not reach the base".into(),
-                "testbed models serial arms: cut the loop",
+                &format!(
+                    "testbed models serial arms: delete this joint, and join link \"{}\" to the arm",
+                    joint.child.link
+                ),
             )),
             None => Ok(&root.name),
         }
@@ -116,15 +132,30 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses an arm without any inertia. Links without inertia are allowed in general; forward dynamics needs
+    /// Refuses an arm without any inertia, and warns of each moving link without any where others have some. Forward dynamics needs
     /// [`Arm::massless_joint`] to be `None`.
-    pub(super) fn check_masses(&self, arm: &Arm) -> Result<(), ArmError> {
-        if arm.joints.iter().any(|joint| joint.inertia != Inertia::zero()) {
-            return Ok(());
+    pub(super) fn check_masses(&self, arm: &mut Arm) -> Result<(), ArmError> {
+        let is_bare = |joint: &&Joint| joint.inertia == Inertia::zero();
+        let bare: Vec<&Joint> = arm.joints.iter().filter(is_bare).collect();
+        if bare.len() == arm.joints.len() {
+            return Err(self.robot_error(
+                "has no moving link with a mass or an inertia (<inertial>)".into(),
+                "dynamics need masses and inertias: export them from the CAD model",
+            ));
         }
-        Err(self.robot_error(
-            "no moving link has a mass or an inertia (<inertial>)".into(),
-            "dynamics need masses and inertias: export them from the CAD model",
-        ))
+        let notes: Vec<String> = bare.iter().map(|joint| self.massless(joint)).collect();
+        arm.warnings.extend(notes);
+        Ok(())
+    }
+
+    /// The warning that the link of `joint` has no mass.
+    fn massless(&self, joint: &Joint) -> String {
+        let name = &joint.link_name;
+        let line = line_of(self.text, "link", name);
+        format!(
+            "link \"{name}\" (line {line}), which {} moves, has no mass and no inertia; add its <inertial>, unless it stands for \
+             no body",
+            joint.name
+        )
     }
 }

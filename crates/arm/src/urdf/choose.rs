@@ -24,8 +24,10 @@ pub(super) struct Chain<'a> {
     pub(super) tip: Option<&'a str>,
     /// The joints that could move and are fixed.
     pub(super) fixed: Vec<FixedJoint>,
+    /// What is doubtful about them.
+    pub(super) warnings: Vec<String>,
     /// All joints that do not move, each with its position (rad or m).
-    positions: HashMap<&'a str, f64>,
+    pub(super) positions: HashMap<&'a str, f64>,
 }
 
 impl Chain<'_> {
@@ -52,7 +54,7 @@ pub(super) fn kind(joint: &urdf_rs::Joint) -> JointKind {
 }
 
 /// The limits of a joint's position, if they are plausible.
-fn limits(joint: &urdf_rs::Joint) -> Option<(f64, f64)> {
+pub(super) fn limits(joint: &urdf_rs::Joint) -> Option<(f64, f64)> {
     let (lower, upper) = (joint.limit.lower, joint.limit.upper);
     (joint.joint_type != JointType::Continuous && lower < upper).then_some((lower, upper))
 }
@@ -141,6 +143,7 @@ impl<'a> Reader<'a> {
             base,
             tip,
             fixed: Vec::new(),
+            warnings: Vec::new(),
             positions: HashMap::new(),
         };
         let names = |list: &Joints<'_>, joint: &urdf_rs::Joint| list.iter().any(|other| other.name == joint.name);
@@ -168,6 +171,7 @@ impl<'a> Reader<'a> {
                 is_carried: carried.is_some_and(|path| path.iter().any(|joint| names(&moving, joint))),
             });
         }
+        self.check_mimics(&mut chain, &options.recorded)?;
         self.follow(&mut chain);
         for fixed in &mut chain.fixed {
             if let Some(joint) = self.robot.joints.iter().find(|joint| joint.name == fixed.name) {
@@ -352,33 +356,5 @@ impl<'a> Reader<'a> {
                 ),
             ))
         })
-    }
-
-    /// Sets the positions of joints that mimic a fixed one.
-    fn follow(&self, chain: &mut Chain<'a>) {
-        // A mimicked joint may mimic another one: there are at most as many steps as joints.
-        for _ in 0..self.robot.joints.len() {
-            let mut changed = false;
-            for joint in &self.robot.joints {
-                let Some(mimic) = &joint.mimic else { continue };
-                let fixed = chain.fixed.iter().position(|fixed| fixed.name == joint.name);
-                let Some(at) = fixed.filter(|&at| chain.fixed[at].reason != FixedBecause::Locked) else {
-                    continue;
-                };
-                let Some(followed) = chain.positions.get(mimic.joint.as_str()) else {
-                    continue;
-                };
-                let wanted = mimic.multiplier.unwrap_or(1.0) * followed + mimic.offset.unwrap_or(0.0);
-                let position = limits(joint).map_or(wanted, |(lower, upper)| wanted.clamp(lower, upper));
-                changed |= chain.fixed[at].position != position && position.is_finite();
-                if position.is_finite() {
-                    chain.fixed[at].position = position;
-                    chain.positions.insert(&joint.name, position);
-                }
-            }
-            if !changed {
-                break;
-            }
-        }
     }
 }

@@ -5,13 +5,9 @@ use std::path::Path;
 
 use quick_xml::events::{BytesStart, Event};
 
+use super::place::{line_at, syntax_error};
+use super::why;
 use crate::error::ArmError;
-
-/// The attributes whose values are numbers.
-const NUMBERS: [&str; 18] = [
-    "value", "ixx", "ixy", "ixz", "iyy", "iyz", "izz", "xyz", "rpy", "lower", "upper", "effort", "velocity", "damping",
-    "friction", "radius", "length", "size",
-];
 
 /// The largest depth of nested elements. URDFs need no more, and a deeper one could overflow the parser's stack.
 const DEEPEST: usize = 64;
@@ -21,6 +17,8 @@ pub(super) struct Text {
     /// The text without comments and without textures that name no file, which `urdf-rs` refuses. They are replaced by
     /// spaces, so that all other bytes keep their positions.
     pub(super) blanked: String,
+    /// The position of the tag `<robot …>`, which declares namespaces.
+    root: Range<usize>,
     /// The positions of the links, joints and other elements of the robot.
     elements: Vec<Range<usize>>,
 }
@@ -36,7 +34,7 @@ impl Text {
         let (mut blanks, mut elements): (Vec<Range<usize>>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
         let mut depth: usize = 0;
         let (mut begun, mut texture) = (0, None);
-        let mut root_seen = false;
+        let mut root = None;
         loop {
             let from = reader.buffer_position() as usize;
             let event = reader.read_event().map_err(|error| {
@@ -51,8 +49,8 @@ impl Text {
             match &event {
                 Event::Start(tag) | Event::Empty(tag) => {
                     let is_empty = matches!(event, Event::Empty(_));
-                    if !root_seen {
-                        root_seen = true;
+                    if root.is_none() {
+                        root = Some(here.clone());
                         check_root(tag).map_err(|reason| syntax_error(path, Some(line_at(text, from)), reason))?;
                     }
                     if is_xacro(tag) {
@@ -91,37 +89,27 @@ impl Text {
                 _ => {}
             }
         }
-        if !root_seen {
+        let Some(root) = root else {
             let reason = "is not a URDF: it has no <robot> element; give the robot's URDF".into();
             return Err(syntax_error(path, None, reason));
-        }
+        };
         blanks.sort_by_key(|range| range.start);
         Ok(Self {
             blanked: blanked(text, &blanks),
+            root,
             elements,
         })
     }
 
-    /// The parser's error with its place: an attribute that is not a number, or else the first element that does not
-    /// parse by itself.
+    /// The parser's error with its place: the first element of the robot that does not parse by itself.
     pub(super) fn explain(&self, path: &Path, error: &urdf_rs::UrdfError) -> ArmError {
         let text = &self.blanked;
-        for attribute in NUMBERS {
-            for (position, opening) in text.match_indices(&format!(" {attribute}=\"")) {
-                let value = text[position + opening.len()..].split('"').next().unwrap_or_default();
-                if value.split_whitespace().any(|word| word.parse::<f64>().is_err()) {
-                    let reason = format!("{attribute}=\"{value}\" is not a number; give one in SI units");
-                    return syntax_error(path, Some(line_at(text, position)), reason);
-                }
-            }
-        }
         for element in &self.elements {
-            let alone = format!("<robot name=\"r\">{}</robot>", &text[element.clone()]);
+            let own = &text[element.clone()];
+            let alone = format!("{}{own}</robot>", &text[self.root.clone()]);
             if let Err(error) = urdf_rs::read_from_string(&alone) {
-                let line = line_at(text, element.start);
-                let opening = text[element.clone()].split('>').next().unwrap_or_default();
-                let reason = format!("{opening}>: {}; correct the element", plain(&error));
-                return syntax_error(path, Some(line), reason);
+                let (offset, reason) = why::reason(own, &error);
+                return syntax_error(path, Some(line_at(text, element.start + offset)), reason);
             }
         }
         if !text.contains("</robot>") {
@@ -132,15 +120,9 @@ impl Text {
         syntax_error(
             path,
             None,
-            format!("is not a URDF: {}; check it with check_urdf", plain(error)),
+            format!("is not a URDF: {}; check it with check_urdf", why::plain(error)),
         )
     }
-}
-
-/// The parser's message without the name of its error type.
-fn plain(error: &urdf_rs::UrdfError) -> String {
-    let text = error.to_string();
-    text.strip_prefix("custom: ").unwrap_or(&text).to_owned()
 }
 
 /// Refuses a root element that is not that of a URDF; the error names the format.
@@ -200,37 +182,4 @@ fn blanked(text: &str, ranges: &[Range<usize>]) -> String {
     }
     result.push_str(&text[at..]);
     result
-}
-
-fn syntax_error(path: &Path, line: Option<usize>, reason: String) -> ArmError {
-    let place = line.map_or(String::new(), |line| format!(":{line}"));
-    ArmError::Syntax {
-        path: path.to_owned(),
-        place,
-        reason,
-    }
-}
-
-fn line_at(text: &str, position: usize) -> usize {
-    text.as_bytes()[..position.min(text.len())]
-        .iter()
-        .filter(|byte| **byte == b'\n')
-        .count()
-        + 1
-}
-
-/// The line (from 1) of the element `<tag … name="name"`, or that of the last such tag, or 1.
-pub(super) fn line_of(text: &str, tag: &str, name: &str) -> usize {
-    let open = format!("<{tag}");
-    let mut line = 1;
-    for (start, _) in text.match_indices(&open) {
-        let element = text[start..].split('>').next().unwrap_or_default();
-        if [format!("name=\"{name}\""), format!("name='{name}'")]
-            .iter()
-            .any(|n| element.contains(n.as_str()))
-        {
-            line = line_at(text, start);
-        }
-    }
-    line
 }

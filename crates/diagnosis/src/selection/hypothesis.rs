@@ -159,9 +159,9 @@ fn no_effect(name: &str) -> String {
 /// The reason why a joint is refused that the robot does not have.
 fn no_joint(name: &str, study: &Study) -> String {
     let names: Vec<String> = study.data.arm.joints().iter().map(|joint| joint.name.clone()).collect();
-    let meant = nearest(name, &names).map_or_else(String::new, |meant| format!("did you mean {meant}? "));
+    let meant = nearest(name, &names).map_or_else(String::new, |meant| format!("did you mean \"{meant}\"? "));
     format!(
-        "the robot has no joint {name}; {meant}its joints are {}",
+        "the robot has no joint \"{name}\"; {meant}its joints are {}",
         names.join(", ")
     )
 }

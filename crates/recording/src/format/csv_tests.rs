@@ -111,7 +111,22 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
     says("\u{FEFF}\r\n", &["r.csv:1: the file is empty"]);
     says(
         "<?xml version=\"1.0\"?>\n<robot/>",
-        &["r.csv:1: this is XML (a URDF?)", "--robot"],
+        &["r.csv:1: this is XML (a URDF?), not CSV", "--robot"],
+    );
+    // Two files that were joined; the second one with a byte order mark.
+    for mark in ["", "\u{FEFF}"] {
+        says(
+            &format!("t,q_a,tau_a\n0,1,2\n1,1,2\n{mark}t,q_a,tau_a\n0,1,2\n"),
+            &["r.csv:4: the header is repeated here; delete the line"],
+        );
+    }
+    says(
+        "t,\"q_a\nerror: b\",\"tau_a\nerror: b\"\n0,1,2\n1,1,2\n",
+        &[
+            "r.csv",
+            "the name of the joint \"a\\nerror: b\" holds a line break",
+            "rename its columns",
+        ],
     );
     says("t,q_a,tau_a\n0,1,2\n\0\n", &["r.csv:3: there is a zero byte", "UTF-8"]);
     says(

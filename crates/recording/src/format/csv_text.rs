@@ -34,7 +34,7 @@ pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
         return Some((line, reason));
     }
     if text.trim_ascii().starts_with(b"<") {
-        return said("this is XML (a URDF?), no CSV; give a recording here, and the robot's URDF with --robot");
+        return said("this is XML (a URDF?), not CSV; give a recording here, and the robot's URDF with --robot");
     }
     None
 }

@@ -91,10 +91,26 @@ pub(super) fn order(
     }
     if let Some(joint) = foreign.first() {
         let fixed: Vec<String> = arm.fixed_joints().iter().map(|joint| joint.name.clone()).collect();
-        let hint = nearest(joint, &fixed).map_or_else(String::new, |near| format!(" (is q_{near} meant?)"));
+        let unrecorded: Vec<String> = fixed
+            .iter()
+            .filter(|name| !recording.joints.contains(name))
+            .cloned()
+            .collect();
+        let and_fixed = match unrecorded.as_slice() {
+            [] => String::new(),
+            names => format!(", and without a column {}", quoted(names)),
+        };
+        let rename = nearest(joint, &unrecorded).map_or_else(String::new, |near| {
+            format!("rename the column to q_{near} if \"{near}\" is meant, ")
+        });
         bail!(
-            "{name}: column q_{joint}: {} is not a joint of {}, which has {}{hint}; leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
+            "{name}: column q_{joint}: {} {} of {}, which has {}{and_fixed}; {rename}leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
             quoted(&foreign),
+            if foreign.len() == 1 {
+                "is not a joint"
+            } else {
+                "are not joints"
+            },
             arm.name(),
             quoted(&known)
         );

@@ -78,7 +78,7 @@ impl Listener for Terminal<'_> {
 
     fn note(&self, text: &str) {
         if !self.args.quiet {
-            self.progress.suspend(|| eprintln!("note: {text}"));
+            self.progress.suspend(|| output::say(format_args!("note: {text}")));
         }
     }
 
@@ -87,7 +87,7 @@ impl Listener for Terminal<'_> {
             return;
         }
         for line in notes.lines(!self.args.verbose) {
-            self.progress.suspend(|| eprintln!("{line}"));
+            self.progress.suspend(|| output::say(&line));
         }
     }
 }

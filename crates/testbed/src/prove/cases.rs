@@ -103,7 +103,8 @@ impl Cases {
                     "none lifelike"
                 };
                 let (count, names) = (plans.len(), names.join(", "));
-                format!("{count} cases drawn from seed {seed} on {names}, {real}, {urdfs}")
+                let cases = if count == 1 { "case" } else { "cases" };
+                format!("{count} {cases} drawn from seed {seed} on {names}, {real}, {urdfs}")
             }
             Self::Given { .. } => "cases that were given".to_owned(),
         }
@@ -240,7 +241,9 @@ fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<Place>> {
     );
     if names.len() < all {
         let (left_out, truth) = (all - names.len(), truth.display());
-        eprintln!("note: {left_out} of {all} cases have no ground truth in {truth}; they are omitted");
+        crate::output::say(format_args!(
+            "note: {left_out} of {all} cases have no ground truth in {truth}; they are omitted"
+        ));
     }
     let place = |(number, name): (usize, String)| Place {
         number,

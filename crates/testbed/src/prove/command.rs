@@ -215,6 +215,7 @@ fn summary(proof: &Proof) -> String {
         let reached = match target.reached {
             Some(true) => "reached",
             Some(false) => "missed",
+            None if target.counted.is_some_and(|counted| counted.of > 0) && target.at_least.is_some() => "too few",
             None => "–",
         };
         table.add_row([

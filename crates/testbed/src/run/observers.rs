@@ -97,7 +97,7 @@ impl View {
     pub fn finish(self) -> bool {
         match self.0.map(crate::viewer::Viewer::finish) {
             Some(Err(error)) => {
-                eprintln!("warning: {error:#}; the run goes on without it");
+                crate::output::say(format_args!("warning: {error:#}; the run goes on without it"));
                 false
             }
             Some(Ok(())) => true,

@@ -170,5 +170,5 @@ fn bail_lost() -> anyhow::Result<()> {
 }
 
 fn warn(what: &str) {
-    eprintln!("warning: {what}");
+    crate::output::say(format_args!("warning: {what}"));
 }

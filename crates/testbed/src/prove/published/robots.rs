@@ -45,7 +45,9 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
         absent.join(", ")
     );
     for name in &absent {
-        eprintln!("note: {looked}/{name}: does not exist; the robot is omitted");
+        output::say(format_args!(
+            "note: {looked}/{name}: does not exist; the robot is omitted"
+        ));
     }
     Ok((robots, absent))
 }
