@@ -298,29 +298,3 @@ pub fn wrapped(text: &str, start: &str) -> String {
     }
     lines + &line + "\n"
 }
-
-#[cfg(test)]
-mod tests {
-    use diagnosis::{Diagnosis, Parameter, RecordingNames};
-    use effects::Effect;
-    use effects::friction::CoulombFriction;
-
-    use super::*;
-
-    #[test]
-    fn a_size_that_may_be_zero_is_explained() {
-        let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
-        let mut finding = Finding::of(Effect::of(&CoulombFriction).on("a".to_owned()));
-        let level = |low: f64| Parameter {
-            value: 0.1,
-            ci95: [low, 0.4],
-            unit: "N m",
-        };
-        finding.parameters.insert("level", level(0.05));
-        report.findings = vec![finding.clone()];
-        assert!(!columns(&report).contains("do not determine the size"));
-        finding.parameters.insert("level", level(-0.2));
-        report.findings.push(finding);
-        assert!(columns(&report).contains("do not determine the size"));
-    }
-}

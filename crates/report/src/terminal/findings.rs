@@ -109,3 +109,53 @@ pub fn table(report: &Report) -> String {
         .collect::<Vec<_>>()
         .join("\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use diagnosis::{Diagnosis, Parameter, RecordingNames, Unexplained};
+    use effects::Effect;
+    use effects::drive::TransmissionCoupling;
+    use effects::friction::CoulombFriction;
+
+    use super::*;
+
+    #[test]
+    fn a_size_that_may_be_zero_is_explained() {
+        let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
+        let mut finding = Finding::of(Effect::of(&CoulombFriction).on("a".to_owned()));
+        let level = |low: f64| Parameter {
+            value: 0.1,
+            ci95: [low, 0.4],
+            unit: "N m",
+        };
+        finding.parameters.insert("level", level(0.05));
+        report.findings = vec![finding.clone()];
+        assert!(!columns(&report).contains("do not determine the size"));
+        finding.parameters.insert("level", level(-0.2));
+        report.findings.push(finding);
+        assert!(columns(&report).contains("do not determine the size"));
+    }
+
+    #[test]
+    fn joints_with_a_residual_alone_and_the_other_joint_of_a_coupling_are_shown() {
+        let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
+        let mut coupling = Finding::of(Effect::of(&TransmissionCoupling).on("a".to_owned()));
+        coupling.other = Some("b".to_owned());
+        report.findings = vec![coupling];
+        let residual = |joint: &str| Unexplained {
+            joint: joint.to_owned(),
+            share: 0.43,
+            depends_on: Vec::new(),
+            time: Vec::new(),
+            next: String::new(),
+        };
+        report.unexplained = vec![residual("a"), residual("c")];
+        let shown = table(&report);
+        assert!(shown.contains("transmission coupling with b"), "{shown}");
+        let rows: Vec<&str> = shown.lines().filter(|line| line.contains("unexplained")).collect();
+        assert!(
+            matches!(rows[..], [row] if row.starts_with("c ") && row.contains("43 %")),
+            "{shown}"
+        );
+    }
+}
