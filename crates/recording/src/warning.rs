@@ -318,14 +318,14 @@ impl fmt::Display for Warning {
                     format!("are missing, one or a few at a time (the first at {time:.3} s)")
                 }
             ),
-            Self::Gap { from, to, shift } => {
-                write!(f, "no rows from {from:.4} s to {to:.4} s; treated as separate segments")?;
-                if *shift == 0.0 {
-                    Ok(())
-                } else {
-                    write!(f, " (the clock is shifted by {:.0} % of a period)", 100.0 * shift)
-                }
+            Self::Gap { from, to, shift: 0.0 } => {
+                write!(f, "no rows from {from:.4} s to {to:.4} s; treated as separate segments")
             }
+            Self::Gap { from, to, shift } => write!(
+                f,
+                "the clock is shifted by {:.0} % of a period between {from:.4} s and {to:.4} s; treated as separate segments",
+                100.0 * shift
+            ),
             Self::Spikes {
                 joint,
                 quantity,
