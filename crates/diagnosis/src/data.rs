@@ -9,7 +9,7 @@ pub use recording::statistics;
 use crate::data::motion::{Chunk, Motions};
 use crate::error::DiagnosisError;
 use crate::options::Options;
-use crate::thresholds::{RESTING, RESTING_REACH};
+use crate::thresholds::{RESTING, RESTING_REACH, ROUNDING};
 
 pub mod channels;
 pub mod cutoff;
@@ -103,7 +103,10 @@ impl Data {
         }
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
         let noise = measure::noise(&motions, &rigid, &fitted);
-        let floor = |(noise, torque): (&f64, &f64)| noise + (options.thresholds.tolerance * torque).powi(2);
+        // A channel without noise and torque must not have an infinite weight.
+        let least = (ROUNDING * scales.torque.iter().copied().fold(0.0, f64::max)).powi(2);
+        let floor =
+            |(noise, torque): (&f64, &f64)| (noise + (options.thresholds.tolerance * torque).powi(2)).max(least);
         Ok(Self {
             seconds: measure::seconds(&motions),
             nominal: on_rows(&motions, |k, chunk, joint| {

@@ -28,6 +28,12 @@ pub enum DiagnosisError {
         /// What is wrong with it.
         reason: String,
     },
+    /// The fit overflows: nothing can be said.
+    #[error(
+        "the fit of these recordings is not a finite number; check the units of their torques, and the masses and inertias of the URDF, \
+         for values that are far too small or too large (testbed inspect --robot shows their ranges)"
+    )]
+    NotFinite,
     /// There is no recording to fit.
     #[error("no recording to train on")]
     NoTraining,

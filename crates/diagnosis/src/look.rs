@@ -55,6 +55,9 @@ impl Look {
         study.scope = scope;
         study.trace = trace;
         let last = FinalFit::new(study, options, progress)?;
+        if !last.judged.named.score.is_finite() {
+            return Err(DiagnosisError::NotFinite);
+        }
         progress(Step::new(0.78, "alternatives of the findings"));
         let conclusion = Conclusion::new(&last, inputs, options);
         Ok(Self { last, conclusion })

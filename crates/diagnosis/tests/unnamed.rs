@@ -2,9 +2,12 @@
 
 mod support;
 
+use arm::Arm;
 use diagnosis::{Axis, Options, Report, Verdict, diagnose};
 use effects::Regressor;
-use support::{ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, trio};
+use support::{
+    ELBOW, Motion, SHOULDER, TRIO, TURN, baseline_friction, diagnosed, effects_on, inputs, recorded, regular, trio,
+};
 
 /// Torque constants that are wrong on all joints, each by another part, are reported although no finding names them.
 #[test]
@@ -27,6 +30,37 @@ fn torques_that_only_the_background_explains_are_reported() {
         assert!(
             is_named(joint) || remarks.contains(&format!("{joint} ×")),
             "{joint}: {remarks}"
+        );
+    }
+}
+
+/// A joint without a torque, whose link the URDF gives no mass: its channel is zero, or holds the rounding of a model. The other joints
+/// are diagnosed nevertheless.
+#[test]
+fn a_channel_of_rounding_beside_a_link_without_mass_is_left_out() {
+    let (before, last) = TRIO.rsplit_once("<inertial>").expect("links have masses");
+    let (_, after) = last.split_once("</inertial>").expect("the element ends");
+    let arm = Arm::from_urdf_text(&format!("{before}{after}"), "massless.urdf").expect("it is an arm");
+    for size in [0.0, 3e-19] {
+        let recordings = [0, 1, 2].map(|variant| {
+            let mut recording = recorded(&arm, variant, 16.0, &|motion, tau| baseline_friction(motion, tau));
+            let sines = (0..recording.tau[ELBOW].len()).map(|k| size * (0.1 * k as f64).sin());
+            recording.tau[ELBOW] = sines.collect();
+            regular(&recording)
+        });
+        let diagnosis =
+            diagnose(&arm, &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+        for joint in ["turn", "shoulder"] {
+            assert!(
+                effects_on(&diagnosis, joint).contains(&"coulomb_friction"),
+                "{size}: {diagnosis:?}"
+            );
+        }
+        assert!(effects_on(&diagnosis, "elbow").is_empty(), "{size}: {diagnosis:?}");
+        let remarks = diagnosis.remarks.join("\n");
+        assert!(
+            remarks.contains("elbow: the measured torque is almost constant"),
+            "{remarks}"
         );
     }
 }

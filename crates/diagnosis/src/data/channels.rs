@@ -18,7 +18,7 @@ use crate::thresholds::{
 /// Why a channel holds no torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Why {
-    /// It is almost constant while the model's torque varies.
+    /// It is almost constant while the torques of the model or of other joints vary.
     Dead,
     /// It shows one value in this part of the samples in motion.
     Idle(f64),
@@ -32,7 +32,9 @@ impl Why {
     /// The note on the joint `name`.
     pub fn remark(self, name: &str) -> String {
         let what = match self {
-            Self::Dead => "the measured torque is almost constant while the model's varies".to_owned(),
+            Self::Dead => {
+                "the measured torque is almost constant while the model's, or that of other joints, varies".to_owned()
+            }
             Self::Idle(part) => format!(
                 "the torque channel shows one and the same value in {:.0} % of the samples in which the joint moves; it is not a measured torque",
                 100.0 * part

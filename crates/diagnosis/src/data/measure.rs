@@ -7,7 +7,9 @@ use nalgebra::DMatrix;
 use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{deviation, eliminate, mean, quantile_of_sorted};
-use crate::thresholds::{DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, SPEED_QUANTILE};
+use crate::thresholds::{
+    DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, ROUNDING, SPEED_QUANTILE,
+};
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
 const POSES: usize = 10;
@@ -161,13 +163,17 @@ pub fn noise_share(motions: &Motions, arm: &Arm) -> (f64, usize) {
         .fold((0.0, 0), |most, next| if next.0 > most.0 { next } else { most })
 }
 
-/// The joints with dead channels: their `torque` does not vary while the model's does, apart from noise.
+/// The joints with dead channels: their `torque` does not vary while the model's does, apart from noise, or varies by rounding alone.
 pub fn dead(motions: &Motions, rigid: &[Rigid], torque: &[f64]) -> Vec<usize> {
     let fitted = || {
         let chunks = motions.chunks.iter().zip(rigid);
         chunks.filter(|(chunk, _)| is_fitted(motions, chunk))
     };
+    let largest = torque.iter().copied().fold(0.0, f64::max);
     let is_dead = |&joint: &usize| {
+        if torque[joint] <= ROUNDING * largest {
+            return true;
+        }
         let needed = deviation(fitted().flat_map(move |(_, rigid)| &rigid.tau[joint]));
         let noise = motions.sources.iter().map(|source| source.torque_noise[joint]);
         let noise = noise.fold(0.0, f64::max);

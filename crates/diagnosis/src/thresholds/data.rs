@@ -45,6 +45,10 @@ pub const CHANNEL_RIDGE: f64 = 1e-4;
 /// A dead channel varies by less than this part of the variation of the model's torque, and by no more than [`NOISE_ALONE`]
 /// allows.
 pub const DEAD: f64 = 0.05;
+/// A channel that varies by less than this part of the torque that varies most, of all joints, holds the rounding of numbers, and no
+/// torque. Source: double precision rounds to 1e-16 of a number, and a model sums some hundred of them; no sensor resolves 1e-9 of
+/// its range.
+pub const ROUNDING: f64 = 1e-9;
 /// A dead channel varies by no more than this multiple of its noise after both filters.
 pub const NOISE_ALONE: f64 = 4.0;
 /// The quantile of a joint's speeds that counts as its largest speed.

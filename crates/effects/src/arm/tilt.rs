@@ -16,7 +16,7 @@ static SPEC: Spec = Spec {
     title: "tilted base",
     meaning: "the base is not level, so that the direction of gravity differs from the model's",
     distinguished_by: "a spirit level on the base, or static poses all around the base",
-    formula: "gravity rotated by the angle about the axis: a base that is not level, on a wall or on a ceiling",
+    formula: "the base turned by the angle about the axis, which changes the direction of gravity: a base that is not level, on a wall or on a ceiling",
     sentence: "a base tilted by {angle}",
     scope: Scope::Arm,
     parameters: &[
