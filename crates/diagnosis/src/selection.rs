@@ -22,6 +22,7 @@ pub mod hypothesis;
 pub mod identified;
 pub mod judge;
 pub mod naming;
+pub mod of_noise;
 pub mod predict;
 pub mod rivals;
 pub mod special_forms;

@@ -6,11 +6,11 @@ use effects::{Detectability, Effect, Kind};
 use rayon::prelude::*;
 
 use crate::data::Data;
-use crate::data::statistics::mean;
 use crate::report::NotObservable;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
 use crate::selection::FinalFit;
+use crate::selection::of_noise::noise;
 use crate::thresholds::{BEYOND, HIDDEN};
 
 /// Why an effect is not testable whose torque others resemble.
@@ -271,33 +271,13 @@ fn is_seen(last: &FinalFit, candidate: &Candidate, joint: usize) -> bool {
     let column = candidate.columns[0];
     let fit = &last.judged.named.fit;
     // The noise in a simulated column takes as much from the fit as it adds to the column.
-    let noise = noise(last, candidate, joint);
+    let noise = noise(study, candidate, joint);
     let count = products.count[joint].max(1.0);
     let drop = products.drop_of(&study.table, fit, column) - 2.0 * noise * count * fit.weights[joint];
     let nats = 0.5 * products.evidence[joint] * (1.0 + drop.max(0.0) / count).ln();
     let torque = (spread(last, joint, column).powi(2) - noise).max(0.0).sqrt();
     let share = study.data.share(joint, torque);
     nats > needed(last, candidate) && share > study.thresholds.least_share
-}
-
-/// The variance of the noise in the first column of `candidate` on its joint, from that of the recorded positions.
-fn noise(last: &FinalFit, candidate: &Candidate, joint: usize) -> f64 {
-    let data = &last.study.data;
-    let mass = mean(data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)));
-    let noises = data
-        .motions
-        .sources
-        .iter()
-        .zip(&data.fitted)
-        .filter(|(_, fitted)| **fitted);
-    let of_link = mean(noises.map(|(source, _)| (mass * source.acceleration_noise[joint]).powi(2)));
-    let term = &last.study.table.terms[candidate.columns[0]];
-    of_link
-        * candidate
-            .hypothesis
-            .kind
-            .get()
-            .noise_gain(term, mass, data.motions.cutoff)
 }
 
 /// The standard deviation of a column on a joint's moving training rows.

@@ -8,6 +8,7 @@ use crate::regression::fit::Products;
 use crate::search::physics::is_at_its_size;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
+use crate::selection::of_noise::may_be_noise;
 use crate::thresholds::{
     ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
     OF_BEYOND, WORSE,
@@ -276,6 +277,9 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         if hypothesis(member).spec().is_baseline {
             // If the unmodelled forms on the joint are larger, a rotor inertia may be a part of what they represent.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
+        }
+        if may_be_noise(study, member) {
+            return true;
         }
         let needed = match hypothesis(member).generalises() {
             Some(_) if study.strengths.friction == 0.0 => OF_BEYOND * study.thresholds.least_beyond,
