@@ -278,7 +278,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             // If the unmodelled forms on the joint are larger, a rotor inertia may be a part of what they represent.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
-        if may_be_noise(study, member) {
+        if may_be_noise(study, member.candidate, member.evidence) {
             return true;
         }
         let needed = match hypothesis(member).generalises() {

@@ -5,7 +5,6 @@ use effects::drive::JointElasticity;
 use crate::data::statistics::mean;
 use crate::search::candidate::Candidate;
 use crate::search::study::Study;
-use crate::selection::judge::Member;
 use crate::thresholds::{BEYOND_NOISE, NOISE_OF_A_SPRING};
 
 /// The variance of the noise in the first column of `candidate` on its joint, from that of the recorded positions (N² m² or N²).
@@ -28,10 +27,10 @@ pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
             .noise_gain(term, mass, data.motions.cutoff)
 }
 
-/// Whether `member` may be a spring that only filters the noise of the positions out of the link's inertial torque, in the held-out
+/// Whether `candidate`, with this evidence (nats), may be a spring that only filters the noise of the positions out of the link's inertial torque, in the held-out
 /// recordings as well. A part of its column is then noise, and the evidence is not overwhelming.
-pub fn may_be_noise(study: &Study, member: &Member) -> bool {
-    let candidate = &study.candidates[member.candidate];
+pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
+    let candidate = &study.candidates[candidate];
     let Some(joint) = candidate.joint.filter(|_| candidate.hypothesis.is(&JointElasticity)) else {
         return false;
     };
@@ -40,5 +39,5 @@ pub fn may_be_noise(study: &Study, member: &Member) -> bool {
     let variance = column.map_or(0.0, |column| {
         study.table.spread(joint, &study.data.fitted, column).powi(2)
     });
-    member.evidence < BEYOND_NOISE && noise(study, candidate, joint) > NOISE_OF_A_SPRING * variance
+    evidence < BEYOND_NOISE && noise(study, candidate, joint) > NOISE_OF_A_SPRING * variance
 }
