@@ -8,7 +8,7 @@ pub const OF_BEYOND: f64 = 2.0 / 3.0;
 pub const LEAST_DRIVE: f64 = 0.01;
 /// The part of the variance of a spring's column that may be noise of the positions. Source: 26 springs that were named on simulated
 /// rigid joints with coarse encoders (25 of them 0.097 to 1.4, one 0.055), and the true ones of 148 cases of three engines (of the 64
-/// that were found, three have more and less than 200 nats; two of these are small effects beside the injected ones).
+/// that were found, three have more and less than 200 nats; they are small effects beside the injected ones).
 pub const NOISE_OF_A_SPRING: f64 = 0.09;
 /// The evidence with which a spring is named nevertheless (nats). Source: as for [`NOISE_OF_A_SPRING`]; the false ones had 150 at most.
 pub const BEYOND_NOISE: f64 = 200.0;
