@@ -24,6 +24,14 @@ fn refusal(text: &str) -> String {
         .to_string()
 }
 
+/// Checks that the robot of `parts` is refused with a message that holds each of `said`.
+fn refused(parts: &[String], said: &[&str]) {
+    let message = refusal(&robot(parts));
+    for text in said {
+        assert!(message.contains(text), "{message}");
+    }
+}
+
 #[test]
 fn fixed_joints_are_merged() {
     let text = robot(&[
@@ -57,18 +65,41 @@ fn what_is_no_serial_arm_is_refused_by_name() {
             "{message}"
         );
     }
-    let branch = robot(&[
-        link("b", ""),
-        link("a", LINK),
-        link("c", LINK),
-        joint("left", "revolute", "b", "a"),
-        joint("right", "revolute", "b", "c"),
-    ]);
-    let message = refusal(&branch);
-    assert!(
-        message.contains("with 2 ends") && message.contains("--tip a") && message.contains("--tip c"),
-        "{message}"
+    let [b, a, c] = [link("b", ""), link("a", LINK), link("c", LINK)];
+    let three = |joints: &[String]| [&[b.clone(), a.clone(), c.clone()], joints].concat();
+    refused(
+        &three(&[
+            joint("left", "revolute", "b", "a"),
+            joint("right", "revolute", "b", "c"),
+        ]),
+        &["with 2 ends", "--tip a", "--tip c"],
     );
+    refused(
+        &three(&[
+            joint("j1", "revolute", "b", "a"),
+            joint("j2", "revolute", "a", "c"),
+            joint("j3", "revolute", "b", "c"),
+        ]),
+        &[
+            "robot.urdf:7: joint \"j3\" closes a loop: link \"c\" is already the child of joint \"j2\"; testbed models serial arms: \
+             delete joint \"j3\", or joint \"j2\" if that one is not driven",
+        ],
+    );
+    refused(
+        &three(&[joint("j", "revolute", "b", "a"), joint("j", "revolute", "a", "c")]),
+        &["robot.urdf:6: joint \"j\" occurs twice; give each"],
+    );
+    refused(&three(&[joint("j", "revolute", "b", "a")]), &["link \"c\""]);
+    refused(
+        &[
+            b.clone(),
+            a.clone(),
+            joint("j1", "revolute", "b", "a"),
+            joint("j2", "revolute", "a", "b"),
+        ],
+        &["loop; delete the joint that closes it: \"j2\" if link \"b\" is the base"],
+    );
+    refused(&[b, joint("j", "revolute", "b", "nowhere")], &["\"nowhere\""]);
 
     // A robot in which every joint mimics another has no moving joint.
     let mimic = two("revolute").replace("</joint>", "<mimic joint=\"hinge\"/></joint>");
@@ -77,59 +108,6 @@ fn what_is_no_serial_arm_is_refused_by_name() {
         "{}",
         refusal(&mimic)
     );
-
-    let closed = robot(&[
-        link("b", ""),
-        link("a", LINK),
-        link("c", LINK),
-        joint("j1", "revolute", "b", "a"),
-        joint("j2", "revolute", "a", "c"),
-        joint("j3", "revolute", "b", "c"),
-    ]);
-    let message = refusal(&closed);
-    assert!(
-        message.contains(
-            "robot.urdf:7: joint \"j3\" closes a loop: link \"c\" is already the child of joint \"j2\"; testbed models serial \
-             arms: delete joint \"j3\", or joint \"j2\" if that one is not driven"
-        ),
-        "{message}"
-    );
-
-    let ring = robot(&[
-        link("b", ""),
-        link("a", LINK),
-        joint("j1", "revolute", "b", "a"),
-        joint("j2", "revolute", "a", "b"),
-    ]);
-    let message = refusal(&ring);
-    assert!(
-        message.contains("loop; delete the joint that closes it: \"j2\" if link \"b\" is the base"),
-        "{message}"
-    );
-
-    let twice = robot(&[
-        link("b", ""),
-        link("a", LINK),
-        link("c", LINK),
-        joint("j", "revolute", "b", "a"),
-        joint("j", "revolute", "a", "c"),
-    ]);
-    let message = refusal(&twice);
-    assert!(
-        message.contains("robot.urdf:6: joint \"j\" occurs twice; give each"),
-        "{message}"
-    );
-
-    let apart = robot(&[
-        link("b", ""),
-        link("a", LINK),
-        link("far", LINK),
-        joint("j", "revolute", "b", "a"),
-    ]);
-    assert!(refusal(&apart).contains("link \"far\""), "{}", refusal(&apart));
-
-    let unknown = robot(&[link("b", ""), joint("j", "revolute", "b", "nowhere")]);
-    assert!(refusal(&unknown).contains("\"nowhere\""), "{}", refusal(&unknown));
 
     assert!(refusal(&two("fixed")).contains("has no joint that moves"));
     assert!(refusal("not xml at all").contains("not a URDF"));

@@ -53,7 +53,8 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
         if let Some(start) = named.parameters.get_mut("start") {
-            let shift = to_its_clock(last, candidate);
+            let motions = &study.data.motions;
+            let shift = recording_of(last, candidate).map_or(0.0, |(_, at)| motions.own_time(at, 0.0));
             start.value += shift;
             start.ci95 = start.ci95.map(|end| end + shift);
         }
@@ -130,30 +131,28 @@ fn rotor_share(last: &FinalFit, candidate: &Candidate) -> f64 {
     data.share(joint, table.spread(joint, &data.fitted, &torque))
 }
 
-/// What must be added to a time of a contact, so that it is on the clock of its recording (s).
-fn to_its_clock(last: &FinalFit, candidate: &Candidate) -> f64 {
-    let motions = &last.study.data.motions;
-    let window = candidate.window(&last.study.table);
-    let at = window.and_then(|[from, to]| motions.recording_at(0.5 * (from + to)));
-    at.map_or(0.0, |at| motions.own_time(at, 0.0))
+/// The window of a contact (s) and its recording, on whose clock it is reported; `None` for another effect, or between recordings.
+fn recording_of(last: &FinalFit, candidate: &Candidate) -> Option<([f64; 2], usize)> {
+    let window = candidate.window(&last.study.table)?;
+    let at = last.study.data.motions.recording_at(0.5 * (window[0] + window[1]))?;
+    Some((window, at))
 }
 
 fn place(last: &FinalFit, candidate: &Candidate) -> Place {
     let (Data { arm, motions, .. }, table) = (&last.study.data, &last.study.table);
-    if let Some([from, to]) = candidate.window(table) {
-        let at = motions.recording_at(0.5 * (from + to));
+    if let Some((window, at)) = recording_of(last, candidate) {
         // Refinement may have moved an end just beyond the end of the recording.
-        let own = |time: f64| {
-            at.map_or(time, |at| {
-                let [first, last] = motions.span(at);
-                motions.own_time(at, time.clamp(first, last))
-            })
-        };
-        let recording = at.map(|at| motions.sources[at].name.clone());
+        let [first, end] = motions.span(at);
         return Place {
-            time: vec![[own(from), own(to)]],
-            recording,
+            time: vec![window.map(|time| motions.own_time(at, time.clamp(first, end)))],
+            recording: Some(motions.sources[at].name.clone()),
             state: None,
+        };
+    }
+    if let Some(window) = candidate.window(table) {
+        return Place {
+            time: vec![window],
+            ..Place::default()
         };
     }
     let joint = &arm.joints()[candidate.joint.unwrap_or(0)];

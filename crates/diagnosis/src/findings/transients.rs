@@ -254,6 +254,8 @@ impl Residuals<'_> {
             ci95: [value - half, value + half],
             unit,
         };
+        let mut duration = exactly(to - from, CONTACT_DURATION, "s");
+        duration.ci95[0] = duration.ci95[0].max(0.0);
         let spread = force.norm() * (1.0 - explained).max(0.0).sqrt();
         let share_by_joint: BTreeMap<String, f64> = (0..data.motions.dof)
             .map(|joint| {
@@ -272,13 +274,7 @@ impl Residuals<'_> {
                     "start",
                     exactly(data.motions.own_time(source, from), CONTACT_START, "s"),
                 ),
-                (
-                    "duration",
-                    Parameter {
-                        ci95: [(to - from - CONTACT_DURATION).max(0.0), to - from + CONTACT_DURATION],
-                        ..exactly(to - from, CONTACT_DURATION, "s")
-                    },
-                ),
+                ("duration", duration),
             ]),
             share: share_by_joint.values().copied().fold(0.0, f64::max),
             share_by_joint,

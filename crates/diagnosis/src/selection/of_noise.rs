@@ -31,7 +31,8 @@ pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
 /// recordings as well. A part of its column is then noise, and the evidence is not overwhelming.
 pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     let candidate = &study.candidates[candidate];
-    let Some(joint) = candidate.joint.filter(|_| candidate.hypothesis.is(&JointElasticity)) else {
+    let may_be = evidence < BEYOND_NOISE && candidate.hypothesis.is(&JointElasticity);
+    let Some(joint) = candidate.joint.filter(|_| may_be) else {
         return false;
     };
     let place = study.table.place[joint][candidate.columns[0]];
@@ -39,5 +40,5 @@ pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     let variance = column.map_or(0.0, |column| {
         study.table.spread(joint, &study.data.fitted, column).powi(2)
     });
-    evidence < BEYOND_NOISE && noise(study, candidate, joint) > NOISE_OF_A_SPRING * variance
+    noise(study, candidate, joint) > NOISE_OF_A_SPRING * variance
 }
