@@ -323,7 +323,7 @@ impl fmt::Display for Warning {
             }
             Self::Gap { from, to, shift } => write!(
                 f,
-                "the clock is shifted by {:.0} % of a period between {from:.4} s and {to:.4} s; treated as separate segments",
+                "no rows from {from:.4} s to {to:.4} s, over which the clock is shifted by {:.0} % of a period; treated as separate segments",
                 100.0 * shift
             ),
             Self::Spikes {
@@ -364,23 +364,4 @@ fn short(value: f64) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::Warning;
-
-    #[test]
-    fn one_row_is_singular() {
-        let lost = |rows| {
-            Warning::LostRows {
-                rows,
-                of: 4999,
-                time: 1.5,
-            }
-            .to_string()
-        };
-        assert_eq!(lost(1), "1 of 4999 rows is missing, at 1.500 s; interpolated");
-        assert_eq!(
-            lost(2),
-            "2 of 4999 rows are missing, one or a few at a time (the first at 1.500 s); interpolated"
-        );
-    }
-}
+mod tests;
