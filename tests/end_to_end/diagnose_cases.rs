@@ -130,3 +130,67 @@ fn recordings_with_another_load_come_first() {
         "{text}"
     );
 }
+
+/// What changed since the recordings from before is told in the first sentence, in both directions, and the corrected model of today
+/// explains the recordings of today: it has what is new, without an onset, and not what is gone.
+#[test]
+fn the_corrected_model_is_that_of_today() {
+    let path = |name: &str| root().join("tests/cases").join(name).to_string_lossy().into_owned();
+    let robot = path("arm.urdf");
+    for (before, today, phrase, change, has_payload) in [
+        (
+            "friction",
+            "spring_and_payload",
+            "absent in the recordings from",
+            "added",
+            true,
+        ),
+        (
+            "spring_and_payload",
+            "friction",
+            "in the recordings from before",
+            "removed",
+            false,
+        ),
+    ] {
+        let [before, train, held_out] = [
+            format!("{before}/train_1.csv"),
+            format!("{today}/train_1.csv"),
+            format!("{today}/held_out.csv"),
+        ]
+        .map(|name| path(&name));
+        let sandbox = Sandbox::new();
+        let inputs = [
+            "--robot",
+            &robot,
+            "--train",
+            &train,
+            "--held-out",
+            &held_out,
+            "--torques-only",
+        ];
+        let run = |further: &[&str]| sandbox.succeed(&[&["diagnose"], &inputs[..], further].concat());
+        let told = run(&["--before", &before, "--json", "d.json", "--model", "m.toml"]);
+        let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            told.starts_with("Since the recordings from before, this changed:"),
+            "{told}"
+        );
+        assert!(told.contains(phrase), "{told}");
+        let found = sandbox.json("d.json");
+        let changed: Vec<&str> = found["findings"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .filter(|finding| finding["change"] == change)
+            .filter_map(|finding| finding["effect"].as_str())
+            .collect();
+        assert_eq!(changed, ["spring", "payload"], "{told}");
+        let model = std::fs::read_to_string(sandbox.path("m.toml")).expect("it is written");
+        assert_eq!(model.contains("\"payload\""), has_payload, "{model}");
+        assert_eq!(model.contains("\"spring\""), has_payload, "{model}");
+        assert!(!model.contains("onset"), "{model}");
+        let again = run(&["--known", "m.toml"]);
+        assert!(again.contains("no unmodelled effect is detectable"), "{again}");
+    }
+}

@@ -7,19 +7,23 @@ use effects::{CATALOGUE, Effect};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+mod change;
 mod dependence;
 mod different_load;
 mod doubt;
 mod next_experiment;
 mod recording_names;
 mod schema;
+mod verdict;
 
+pub use change::Change;
 pub use dependence::{Axis, Dependence};
 pub use different_load::DifferentLoad;
 pub use doubt::Doubt;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use recording_names::{RecordingNames, UsedPart};
 pub use schema::json_schema;
+pub use verdict::Verdict;
 
 /// The values of [`Finding::sensor`].
 pub(crate) const MOTOR_CURRENT: &str = "motor_current";
@@ -94,24 +98,6 @@ fn effect_names() -> Vec<&'static str> {
     CATALOGUE.iter().map(|kind| kind.spec().name).collect()
 }
 
-/// The diagnosis in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// The model explains the recordings.
-    NoMismatch,
-    /// The findings explain the mismatch.
-    Explained,
-    /// The findings explain a part of the mismatch.
-    PartlyExplained,
-    /// There is no finding, and a mismatch remains.
-    Unexplained,
-    /// The recordings do not contain enough data.
-    NotEnoughData,
-    /// Units, signs, order or zeros of the recordings must be corrected first; no effect was searched.
-    UnitsFirst,
-}
-
 /// One effect named.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Finding {
@@ -149,6 +135,10 @@ pub struct Finding {
     /// Whether it is present since the recordings from before.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub since_before: bool,
+    /// How it changed since the recordings from before; `None` if it did not. An effect that was `removed`, or the part by which one
+    /// was `reduced`, is in those recordings only, and the corrected model does not contain it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub change: Option<Change>,
     /// The further sensor that shows it, where the torque does not: `motor_current` (friction between the motor and a torque sensor) or
     /// `second_encoder`. Such a finding may stand beside another of the same name on the joint.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -162,6 +152,11 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// Whether it acts in the recordings of today, and not only in those from before a change.
+    pub fn acts_today(&self) -> bool {
+        !self.change.is_some_and(Change::is_past)
+    }
+
     /// Whether only the motor's current shows it: friction between the motor and a torque sensor.
     pub fn is_motor_side(&self) -> bool {
         self.sensor == Some(MOTOR_CURRENT)
@@ -183,6 +178,7 @@ impl Finding {
             place: Place::default(),
             sentence: String::new(),
             since_before: false,
+            change: None,
             sensor: None,
             corrects: false,
             as_effect: effect,

@@ -38,7 +38,7 @@ pub struct Decision {
     pub step: usize,
     /// The decision.
     pub action: Action,
-    /// The name of the effect or of the unmodelled form; for a background, its strengths; for a filter, its cut-off.
+    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a filter, its cut-off.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,

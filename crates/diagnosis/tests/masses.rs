@@ -3,9 +3,8 @@
 mod support;
 
 use arm::{Arm, Workspace};
-use diagnosis::{Diagnosis, Input, Options, diagnose};
-use recording::RegularRecording;
-use support::{Injected, Motion, baseline_friction, diagnosed, diagnosed_with, regular, sentences, start, trio};
+use diagnosis::{Diagnosis, Options};
+use support::{Injected, Motion, baseline_friction, diagnosed, diagnosed_with, sentences, trio};
 
 /// The findings beside plain friction: effect and joint.
 fn named(robot: &Arm, injected: Injected<'_>) -> Vec<(String, Option<String>)> {
@@ -186,67 +185,6 @@ fn a_common_factor_has_a_pair_of_links_as_its_alternative() {
         "{:?}",
         finding.confusable_with
     );
-}
-
-/// The mass of a payload of 1.2 kg that was added after the recordings from before, on a robot whose torques are recorded
-/// with these `factors`. Each recording has a `pause` (s). Checks that no other change is found.
-fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
-    let body = arm::Inertia {
-        mass: 1.2,
-        com: arm::Vector3::new(0.02, -0.01, 0.08),
-        tensor: arm::Matrix3::identity() * 2e-3,
-    };
-    let loaded = trio().with_payload(&body);
-    let injected = |motion: &mut Motion, tau: &mut [f64]| {
-        if motion.clock >= start(2) {
-            let mut workspace = Workspace::new(&loaded);
-            loaded.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
-        }
-        baseline_friction(motion, tau);
-        for (tau, factor) in tau.iter_mut().zip(factors) {
-            *tau *= factor;
-        }
-    };
-    let recording = |variant: usize| {
-        let mut recording = support::recorded(&trio(), variant, 16.0, &injected);
-        let second_half = recording.time.len() / 2;
-        recording
-            .time
-            .iter_mut()
-            .skip(second_half)
-            .for_each(|time| *time += pause);
-        regular(&recording)
-    };
-    let recordings: Vec<RegularRecording> = (0..4).map(recording).collect();
-    let input = |(number, recording)| Input {
-        name: ["a", "b", "c", "d"][number],
-        recording,
-        held_out: number == 3,
-        before: number < 2,
-    };
-    let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
-    let diagnosis = diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed");
-    let since: Vec<_> = diagnosis.report.findings.iter().filter(|f| f.since_before).collect();
-    let [payload] = since[..] else {
-        panic!("{:?}", sentences(&diagnosis))
-    };
-    assert_eq!(payload.effect, "payload");
-    payload.parameters["mass"]
-}
-
-/// Torque constants that are wrong by a few per cent also apply to the torque of a new payload. Therefore no torque scale
-/// is found to have changed, and the mass is as uncertain as the constants.
-#[test]
-fn torque_constants_also_apply_to_a_new_payload() {
-    let [low, high] = new_payload([1.05, 0.94, 1.08], 0.0).ci95;
-    assert!(low <= 1.2 && 1.2 <= high, "{low} … {high}");
-}
-
-/// Pauses in recordings from before also count as time before the change.
-#[test]
-fn pauses_of_recordings_from_before_are_before_the_change() {
-    let mass = new_payload([1.0; 3], 100.0);
-    assert!((mass.value / 1.2 - 1.0).abs() < 0.02, "{mass:?}");
 }
 
 /// The diagnosis of a PUMA 560 with dry friction and a payload of `mass` (kg) with this centre of mass. The links have these

@@ -86,7 +86,7 @@ impl dyn Estimate + '_ {
         let terms = self.terms();
         let was_there = terms
             .iter()
-            .any(|term| term.onset().is_some() && self.is_always_on_joint(term.law));
+            .any(|term| !term.is_always() && self.is_always_on_joint(term.law));
         let is_stated = was_there || laws.iter().any(|law| self.on_joint(law).is_some());
         let shares_level = terms.iter().any(|term| term.is(&SIGN));
         if shares_level && is_stated { 0.0 } else { 1.0 }

@@ -73,6 +73,11 @@ pub trait EffectKind: Debug + Sync {
         None
     }
 
+    /// The one effect that acts as two of them on one joint do together; `None` if they stay two.
+    fn sum(&self, _a: &Effect, _b: &Effect) -> Option<Effect> {
+        None
+    }
+
     /// Whether two of them on one joint are the same effect, given twice.
     fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
         true
@@ -95,6 +100,11 @@ pub trait EffectKind: Debug + Sync {
     /// A finding as a short phrase with its parameters.
     fn sentence(&self, _effect: &Effect) -> &'static str {
         self.spec().sentence
+    }
+
+    /// What the recordings from before a change say of an effect that is new, as a phrase.
+    fn before_it(&self, _effect: &Effect) -> &'static str {
+        "absent in the recordings from before"
     }
 
     /// The region of state where it acts, in words, from its columns on a kind of joint.

@@ -52,7 +52,7 @@ pub use quantity::Quantity;
 pub use regressor::Regressor;
 pub use signals::{Rigid, Scales, Signals};
 pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec};
-pub use term::{Carried, Column, Cone, Law, OtherForm, Size, Term};
+pub use term::{Acts, Carried, Column, Cone, Law, OtherForm, Size, Term};
 
 /// Friction in the drive and its gear.
 pub mod friction {

@@ -250,6 +250,8 @@ pub struct Spec {
     pub main: &'static [&'static str],
     /// Whether it may begin within the recordings.
     pub may_set_in: bool,
+    /// Whether it may have acted before a change only. It has one sign, so that no effect in addition to it cancels it.
+    pub may_end: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,
     /// The simpler effect that it generalises.
@@ -337,6 +339,7 @@ impl Spec {
         parameters: &[],
         main: &[],
         may_set_in: false,
+        may_end: false,
         may_repeat: false,
         generalises: None,
         least_beyond_simpler: 0.0,

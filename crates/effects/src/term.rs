@@ -129,8 +129,49 @@ pub struct Term {
     pub form: usize,
     /// Its sizes.
     pub sizes: [f64; 4],
-    /// Its onset (s, on the recordings' own clock); `None` if it always acts.
-    pub from: Option<f64>,
+    /// When it acts.
+    pub acts: Acts,
+}
+
+/// When a term acts, on the recordings' own clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Acts {
+    /// At all times.
+    Always,
+    /// From an onset on (s).
+    Since(f64),
+    /// Before a time (s): in the recordings from before a change.
+    Until(f64),
+}
+
+impl Acts {
+    /// When an effect with these terms acts: as the first one that does not always act.
+    pub fn of(terms: &[Term]) -> Self {
+        let changing = terms.iter().find(|term| !term.is_always());
+        changing.map_or(Self::Always, |term| term.acts)
+    }
+
+    /// Whether both always act, both begin, or both end; the times may differ.
+    pub fn is_like(self, other: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
+
+    /// The time at which it begins or ends (s); `None` if it always acts.
+    pub fn time(self) -> Option<f64> {
+        match self {
+            Self::Since(time) | Self::Until(time) => Some(time),
+            Self::Always => None,
+        }
+    }
+
+    /// Whether it acts at `time` (s).
+    pub fn at(self, time: f64) -> bool {
+        match self {
+            Self::Always => true,
+            Self::Since(from) => from <= time,
+            Self::Until(end) => time < end,
+        }
+    }
 }
 
 impl PartialEq for Term {
@@ -140,7 +181,7 @@ impl PartialEq for Term {
             && self.of == other.of
             && self.form == other.form
             && self.sizes == other.sizes
-            && self.from == other.from
+            && self.acts == other.acts
     }
 }
 
@@ -153,7 +194,7 @@ impl Term {
             of: [joint, 0],
             form: 0,
             sizes: [0.0; 4],
-            from: None,
+            acts: Acts::Always,
         }
     }
 
@@ -185,24 +226,43 @@ impl Term {
 
     /// This term with an onset (s).
     pub fn since(mut self, from: f64) -> Self {
-        self.from = Some(from);
+        self.acts = Acts::Since(from);
         self
     }
 
-    /// This term without an onset.
+    /// This term before a time (s), and not after it.
+    pub fn until(mut self, end: f64) -> Self {
+        self.acts = Acts::Until(end);
+        self
+    }
+
+    /// This term at all times.
     pub fn always(mut self) -> Self {
-        self.from = None;
+        self.acts = Acts::Always;
         self
     }
 
-    /// Its onset (s); `None` if it always acts.
-    pub fn onset(&self) -> Option<f64> {
-        self.from
+    /// Whether it acts at all times.
+    pub fn is_always(&self) -> bool {
+        self.acts == Acts::Always
     }
 
-    /// Whether it is of this law and has no onset.
+    /// Its onset (s); `None` if it has none.
+    pub fn onset(&self) -> Option<f64> {
+        match self.acts {
+            Acts::Since(from) => Some(from),
+            Acts::Always | Acts::Until(_) => None,
+        }
+    }
+
+    /// The time at which it begins or ends (s); `None` if it always acts.
+    pub fn changes_at(&self) -> Option<f64> {
+        self.acts.time()
+    }
+
+    /// Whether it is of this law and always acts.
     pub fn is(&self, law: &'static Law) -> bool {
-        self.from.is_none() && std::ptr::eq(self.law, law)
+        self.is_always() && std::ptr::eq(self.law, law)
     }
 
     /// Whether it depends on the model along the motion, and not only on motion and torque.
@@ -221,9 +281,10 @@ impl Term {
             return None;
         }
         let mut values = (self.law.column)(self, joint, motion)?;
-        if let Some(from) = self.from {
-            let before = |tick: &usize| motion.time(*tick) < from;
-            (0..values.len()).take_while(before).for_each(|tick| values[tick] = 0.0);
+        if !self.is_always() {
+            let acts = |tick: usize| self.acts.at(motion.time(tick));
+            let silent = (0..values.len()).filter(|&tick| !acts(tick));
+            silent.for_each(|tick| values[tick] = 0.0);
         }
         Some(values)
     }

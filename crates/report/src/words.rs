@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use arm::JointKind;
 use diagnosis::statistics::rms;
-use diagnosis::{Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
+use diagnosis::{Change, Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use effects::Regressor;
 
 use crate::numbers;
@@ -33,7 +33,16 @@ pub fn effect(finding: &Finding) -> String {
     if finding.is_motor_side() {
         format!("motor-side {name}")
     } else {
-        name.to_owned()
+        let change = match finding.change {
+            // The title says what is missing.
+            Some(Change::Added) if name != finding.as_effect.spec().title => "",
+            Some(Change::Added) => " (new)",
+            Some(Change::Increased) => " (increase)",
+            Some(Change::Removed) => " (before)",
+            Some(Change::Reduced) => " (decrease)",
+            None => "",
+        };
+        format!("{name}{change}")
     }
 }
 
@@ -234,9 +243,11 @@ pub fn different_load(report: &Report) -> Option<String> {
 
 /// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so.
 pub fn verdict(report: &Report) -> String {
-    let effects = count(report.findings.len(), "effect");
-    let joints: BTreeSet<_> = report.findings.iter().filter_map(|f| f.joint.as_deref()).collect();
-    let has_whole_arm = report.findings.iter().any(|finding| finding.joint.is_none());
+    // What is in the recordings from before only is no error of the model.
+    let found: Vec<&Finding> = report.findings.iter().filter(|finding| finding.acts_today()).collect();
+    let effects = count(found.len(), "effect");
+    let joints: BTreeSet<_> = found.iter().filter_map(|f| f.joint.as_deref()).collect();
+    let has_whole_arm = found.iter().any(|finding| finding.joint.is_none());
     let mut on = Vec::new();
     if !joints.is_empty() {
         on.push(match joints.len() {
@@ -256,7 +267,7 @@ pub fn verdict(report: &Report) -> String {
     };
     let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
-        Verdict::NoMismatch if report.findings.is_empty() => format!(
+        Verdict::NoMismatch if found.is_empty() => format!(
             "The model explains the recordings{}: no unmodelled effect is detectable in them.",
             up_to(report)
         ),

@@ -6,12 +6,13 @@ use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
 use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted};
 use effects::Effect;
+use torque::summed;
 
 use crate::effect_file::EffectFile;
 use crate::inputs::{self, Opened, Recordings, Role};
 use crate::notes::Notes;
 use crate::robot::{self, RobotFile};
-use crate::urdf_friction::{UrdfFriction, known_friction, summed};
+use crate::urdf_friction::{UrdfFriction, known_friction};
 
 /// Effects that the model is known to omit.
 #[derive(Clone, Debug)]

@@ -3,7 +3,6 @@
 use arm::Arm;
 use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, ViscousFriction};
-use effects::sensor::TorqueOffset;
 use effects::{Effect, InUrdf};
 
 use crate::held;
@@ -94,28 +93,10 @@ pub fn known_friction(
     Ok((effects, remark))
 }
 
-/// The known effects and the findings in addition to them: a friction, a drive inertia or a constant torque that is found in addition to a known
-/// one of the same kind becomes one effect with the sum.
-pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
-    let mut sum = known.to_vec();
-    for effect in found {
-        let adds_up = matches!(effect.spec().in_urdf, InUrdf::Damping | InUrdf::Friction)
-            || effect.is(&RotorInertia)
-            || effect.is(&TorqueOffset);
-        let is_same = |other: &&mut Effect| {
-            let key = |effect: &Effect| (effect.kind(), effect.joint().map(str::to_owned), effect.onset());
-            adds_up && key(other) == key(effect)
-        };
-        match (sum.iter_mut().find(is_same), effect.spec().main) {
-            (Some(known), [main]) => *known = known.clone().with(main, known.number(main) + effect.number(main)),
-            _ => sum.push(effect.clone()),
-        }
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
+    use torque::summed;
+
     use super::*;
     use crate::held::Export;
     use crate::urdf_file::corrected_urdf;

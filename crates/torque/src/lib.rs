@@ -33,6 +33,7 @@ mod reach;
 mod reference;
 mod rigid_body;
 mod samples;
+mod summed;
 
 pub use controller::{Command, Controller, Feedback};
 pub use corrected::Corrected;
@@ -47,3 +48,4 @@ pub use model::{Prediction, TorqueModel, Workspace};
 pub use reference::{Fade, Motion, Reference, Sine};
 pub use rigid_body::RigidBody;
 pub use samples::{Sample, Samples};
+pub use summed::summed;

@@ -120,11 +120,11 @@ impl Conclusion {
                 .then(a.joint.cmp(&b.joint))
         });
         let changed = data.motions.changed_at.map(|_| {
-            let new = findings.iter().filter(|(finding, _)| finding.since_before);
+            let new = findings.iter().filter(|(finding, _)| finding.change.is_some());
             new.map(|(finding, _)| sentences::changed(finding)).collect()
         });
         // If the change is named, nothing is to be added.
-        let is_named = |(finding, _): &(Finding, _)| finding.since_before && finding.as_effect.spec().is_wrong_mass;
+        let is_named = |(finding, _): &(Finding, _)| finding.change.is_some() && finding.as_effect.spec().is_wrong_mass;
         let own_load = study.own_load.as_ref();
         let different_load = own_load
             .filter(|_| !findings.iter().any(is_named))
@@ -160,7 +160,10 @@ impl Conclusion {
 
     /// The effects that correct the torque model.
     pub fn effects(&self) -> impl Iterator<Item = Effect> {
-        let found = self.findings.iter().filter(|(finding, _)| finding.corrects);
+        let found = self
+            .findings
+            .iter()
+            .filter(|(finding, _)| finding.corrects && finding.acts_today());
         let found = found.map(|(finding, _)| &finding.as_effect);
         let constants = self.constant_torques.iter().map(constant_torques::effect);
         found.chain(&self.inertials.effects).cloned().chain(constants)

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use effects::Acts;
 use effects::arm::{InertialParameters, Payload};
 use effects::laws::ACCELERATION;
 
 use crate::data::Data;
-use crate::report::{Confusable, Finding, Place};
+use crate::report::{Change, Confusable, Finding, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
@@ -50,6 +51,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         joint: joint.map(joint_name),
     };
     let last_link = as_last_link(last, member.candidate);
+    let change = change(last, member.candidate);
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
         if let Some(start) = named.parameters.get_mut("start") {
@@ -103,12 +105,38 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
                 Vec::new()
             },
             place: place.clone(),
-            since_before: study.data.motions.changed_at.is_some() && !study.always_acts(member.candidate),
+            since_before: change.is_some_and(|change| !change.is_past()),
+            change,
             corrects: true,
             ..Finding::of(named.effect)
         });
     }
     list
+}
+
+/// How a candidate changed since the recordings from before.
+fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
+    let study = &last.study;
+    study.data.motions.changed_at?;
+    let this = &study.candidates[candidate];
+    let is_beside = |&other: &usize| {
+        let other = &study.candidates[other];
+        other.hypothesis == this.hypothesis && other.joint == this.joint
+    };
+    let was_there = last
+        .judged
+        .named
+        .set
+        .iter()
+        .filter(|&&other| study.always_acts(other))
+        .any(is_beside);
+    match Acts::of(&study.terms(candidate)) {
+        Acts::Always => None,
+        Acts::Since(_) if was_there => Some(Change::Increased),
+        Acts::Since(_) => Some(Change::Added),
+        Acts::Until(_) if was_there => Some(Change::Reduced),
+        Acts::Until(_) => Some(Change::Removed),
+    }
 }
 
 /// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use effects::arm::InertialParameters;
 use effects::{Effect, Regressor};
 
-use crate::report::{Dependence, Finding, JointFit, Parameter};
+use crate::report::{Change, Dependence, Finding, JointFit, Parameter};
 use crate::selection::naming::may_be_nothing;
 use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS};
 
@@ -66,13 +66,18 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
     if is_undetermined(finding) {
         text.push_str(", of a size that these recordings do not determine");
     }
-    match finding.parameters.get("onset") {
-        _ if finding.since_before && had_other_form(&finding.as_effect) => {
-            format!("{text}, of another form in the recordings from before")
-        }
-        _ if finding.since_before => format!("{text}, absent in the recordings from before"),
-        Some(onset) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
-        None => text,
+    let form_differs = had_other_form(&finding.as_effect);
+    match (finding.change, finding.parameters.get("onset")) {
+        (Some(Change::Added), _) if form_differs => format!("{text}, of another form in the recordings from before"),
+        (Some(Change::Added), _) => format!(
+            "{text}, {}",
+            finding.as_effect.kind().get().before_it(&finding.as_effect)
+        ),
+        (Some(Change::Increased), _) => format!("{text}, in addition to that in the recordings from before"),
+        (Some(Change::Removed), _) => format!("{text}, in the recordings from before only"),
+        (Some(Change::Reduced), _) => format!("{text} less than in the recordings from before"),
+        (None, Some(onset)) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
+        (None, None) => text,
     }
 }
 

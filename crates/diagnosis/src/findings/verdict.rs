@@ -207,7 +207,7 @@ pub fn not_enough(last: &FinalFit) -> Vec<String> {
 
 /// The verdict.
 pub fn verdict(findings: &[Finding], unexplained: &[Unexplained], not_enough: &[String]) -> Verdict {
-    match (findings.is_empty(), unexplained.is_empty()) {
+    match (!findings.iter().any(Finding::acts_today), unexplained.is_empty()) {
         _ if !not_enough.is_empty() => Verdict::NotEnoughData,
         (true, true) => Verdict::NoMismatch,
         (true, false) => Verdict::Unexplained,

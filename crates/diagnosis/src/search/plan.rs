@@ -1,5 +1,7 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
+use effects::Acts;
+
 use crate::options::Step;
 use crate::search::connection;
 use crate::search::problem::Selection;
@@ -10,7 +12,7 @@ use crate::thresholds::{MOST_LAST, MOST_REFINEMENTS, MOST_SUGGESTIONS, MOST_SWAP
 /// Searches the candidates that together explain the training recordings. `progress` receives each step.
 pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     let baseline: Vec<usize> = (0..study.candidates.len())
-        .filter(|&c| study.candidates[c].hypothesis.spec().is_friction)
+        .filter(|&c| study.candidates[c].hypothesis.spec().is_friction && study.always_acts(c))
         .collect();
     let products = study.training_products();
     let mut selected = study.problem(&products).choose(baseline, &products.first_weights());
@@ -21,14 +23,16 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         ));
         let before = selected.set.clone();
         // Unmodelled forms must not hide effects that the residual suggests. Neither must earlier suggestions, which were
-        // made with a worse fit: the period of a ripple, a contact or an onset may have taken the place of another one.
+        // made with a worse fit: the period of a ripple, a contact or an onset may have taken the place of another one. What changed
+        // since the recordings from before does not follow from the residual.
         let products = study.training_products();
         let named = before
             .iter()
             .copied()
             .filter(|&c| {
                 let hypothesis = study.candidates[c].hypothesis;
-                let sets_in = !study.always_acts(c);
+                let at = Acts::of(&study.terms(c)).time();
+                let sets_in = at.is_some_and(|at| Some(at) != study.data.motions.changed_at);
                 hypothesis.name().is_some() && !sets_in && !hypothesis.spec().is_suggested
             })
             .collect();

@@ -2,7 +2,7 @@
 
 use effects::background::OWN_FRICTION;
 use effects::laws::{SIGN, VELOCITY};
-use effects::{Law, Term};
+use effects::{Acts, Law, Term};
 use rayon::prelude::*;
 
 use crate::data::Data;
@@ -220,17 +220,17 @@ impl Problem<'_> {
         let set = selected.others(member);
         let bare = self.choose(set.clone(), &selected.fit.weights);
         let candidate = &self.candidates[member];
-        let onset = |c: &Candidate| self.onset(c);
+        let acts = |c: &Candidate| self.acts(c);
         let is_contained = |plain: &Candidate| plain.columns.iter().all(|column| candidate.columns.contains(column));
         let is_plain = |&c: &usize| {
             let plain = &self.candidates[c];
             Some(plain.hypothesis) == candidate.hypothesis.generalises()
                 && plain.joint == candidate.joint
-                && (is_contained(plain) || onset(plain).is_some() == onset(candidate).is_some())
+                && (is_contained(plain) || acts(plain).is_like(acts(candidate)))
         };
         // Among candidates with an onset, only those with nearly the same onset.
-        let apart = |&c: &usize| match (onset(&self.candidates[c]), onset(candidate)) {
-            (Some(a), Some(b)) => (a - b).abs(),
+        let apart = |&c: &usize| match (acts(&self.candidates[c]), acts(candidate)) {
+            (Acts::Since(a), Acts::Since(b)) => (a - b).abs(),
             _ => 0.0,
         };
         let plain = (0..self.candidates.len()).filter(is_plain);

@@ -1,6 +1,6 @@
 //! Sizes on which a column depends nonlinearly, refined between those of the forms.
 
-use effects::{Size, Term};
+use effects::{Acts, Size, Term};
 use rayon::prelude::*;
 
 use crate::data::statistics::mean;
@@ -132,8 +132,7 @@ fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
         *c != member && !other.is_trial && other.hypothesis == this.hypothesis && other.joint == this.joint
     };
     let terms = (0..study.candidates.len()).filter(is_like).map(|c| study.terms(c));
-    let onset = |terms: &[Term]| terms.iter().find_map(Term::onset);
-    terms.filter(|terms| onset(terms) == onset(&own)).collect()
+    terms.filter(|terms| Acts::of(terms) == Acts::of(&own)).collect()
 }
 
 /// The largest number of kinds of finer steps of a law.

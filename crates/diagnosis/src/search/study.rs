@@ -78,21 +78,21 @@ pub struct Study {
     pub given_up: Vec<(Hypothesis, Option<usize>)>,
 }
 
-/// `terms` of a hypothesis that begins at `at` (s). The Coulomb level that a friction generalises was there before, and is not
-/// counted a second time.
-fn begun(hypothesis: Hypothesis, terms: &[Term], at: f64) -> Vec<Term> {
+/// `terms` of a hypothesis, each with `change`: a begin or an end. The Coulomb level that a friction generalises is there before and
+/// after the change, and is not counted a second time.
+fn changing(hypothesis: Hypothesis, terms: &[Term], change: impl Fn(&Term) -> Term) -> Vec<Term> {
     let generalises_friction = hypothesis
         .generalises()
         .is_some_and(|simpler| simpler.spec().is_friction);
-    let was_there = |term: &Term| generalises_friction && term.is(&SIGN);
-    let begun = |term: &Term| if was_there(term) { *term } else { term.since(at) };
-    terms.iter().map(begun).collect()
+    let stays = |term: &Term| generalises_friction && term.is(&SIGN);
+    let changing = |term: &Term| if stays(term) { *term } else { change(term) };
+    terms.iter().map(changing).collect()
 }
 
 impl Study {
     /// Whether a candidate acts at all times, and not from an onset on.
     pub fn always_acts(&self, candidate: usize) -> bool {
-        self.terms(candidate).iter().all(|term| term.onset().is_none())
+        self.terms(candidate).iter().all(Term::is_always)
     }
 
     /// The candidates that `options` allow, with their columns along `data`.
@@ -161,11 +161,21 @@ impl Study {
             options.may_be(hypothesis.name(), joint.map(|joint| &arm.joints()[joint].name))
         });
         if let Some(at) = motions.changed_at {
-            // Every named effect may have begun after the recordings from before.
-            let new: Vec<_> = list
+            // Every named effect may have begun after the recordings from before. One that has only one sign may also have ended:
+            // the other effects in addition to those from before are of the opposite sign then.
+            let named = list
                 .iter()
-                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.spec().is_simulated)
-                .map(|(hypothesis, joint, terms)| (*hypothesis, *joint, begun(*hypothesis, terms, at)))
+                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.spec().is_simulated);
+            let begun = |(hypothesis, joint, terms): &(Hypothesis, _, Vec<Term>)| {
+                (*hypothesis, *joint, changing(*hypothesis, terms, |term| term.since(at)))
+            };
+            let ended = |(hypothesis, joint, terms): &(Hypothesis, _, Vec<Term>)| {
+                (*hypothesis, *joint, changing(*hypothesis, terms, |term| term.until(at)))
+            };
+            let new: Vec<_> = named
+                .clone()
+                .map(begun)
+                .chain(named.filter(|(hypothesis, ..)| hypothesis.spec().may_end).map(ended))
                 .collect();
             list.extend(new);
         }

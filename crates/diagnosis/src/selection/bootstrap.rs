@@ -189,7 +189,7 @@ type ScaledBy = (usize, usize);
 fn scaled(study: &Study, selected: &Selection) -> Vec<ScaledBy> {
     let columns = &selected.fit.columns;
     let term = |k: usize| study.table.terms[columns[k]];
-    let is_scale = |&k: &usize| term(k).is(&RIGID) && term(k).onset().is_none();
+    let is_scale = |&k: &usize| term(k).is(&RIGID);
     let scales = (selected.fit.background..columns.len()).filter(is_scale);
     let of = |scale: usize| {
         let is_scaled = move |&k: &usize| {

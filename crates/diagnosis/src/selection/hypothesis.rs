@@ -1,7 +1,7 @@
 //! A hypothesis of the user (`--only`): the requested effects are fitted together, without search and selection.
 
 use effects::drive::FARTHEST_COUPLED;
-use effects::{CATALOGUE, Scope};
+use effects::{Acts, CATALOGUE, Scope};
 use recording::nearest;
 
 use crate::error::DiagnosisError;
@@ -191,7 +191,7 @@ fn best(
     };
     // An effect without a form with onset is taken as always acting.
     let is_as_wanted = |&c: &usize| {
-        let sets_in = problem.onset(&problem.candidates[c]).is_some();
+        let sets_in = problem.acts(&problem.candidates[c]) != Acts::Always;
         wanted.sets_in.is_none_or(|wanted| wanted == sets_in)
     };
     let mut forms: Vec<usize> = (0..problem.candidates.len()).filter(is_form).collect();

@@ -103,7 +103,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         // also represent constants.
         let candidates = &study.candidates;
         let mut simple = study.allowed();
-        simple.retain(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant);
+        simple.retain(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant && study.always_acts(c));
         let with_all = problem.forward(kept.clone(), &simple);
         let with_forms: Vec<Option<usize>> = beside(&problem, &with_all, &unmodelled)
             .iter()
@@ -253,6 +253,12 @@ pub fn is_idle(problem: &Problem<'_>, selected: &Selection, candidate: usize) ->
 fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let hypothesis = |member: &Member| study.candidates[member.candidate].hypothesis;
     let is_named = |member: &Member| hypothesis(member).name().is_some();
+    // Every joint has friction, but not friction that changed.
+    let is_baseline = |member: &Member| hypothesis(member).spec().is_baseline && study.always_acts(member.candidate);
+    let is_changed_friction = |member: &Member| {
+        let spec = hypothesis(member).spec();
+        spec.is_baseline && spec.is_friction && !is_baseline(member)
+    };
     // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
     let dof = study.data.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
@@ -268,13 +274,22 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))
             .unwrap_or(0);
         if !is_named(member) {
-            let named = largest(&|m| is_named(m) && !hypothesis(m).spec().is_baseline, at);
+            let named = largest(&|m| is_named(m) && !is_baseline(m), at);
             return share < study.thresholds.least_unmodelled_share
                 || member.evidence < study.thresholds.least_unmodelled_evidence
                 || share < study.thresholds.beside_a_larger * named;
         }
         let unmodelled = largest(&|m| !is_named(m), at);
-        if hypothesis(member).spec().is_baseline {
+        if is_changed_friction(member) {
+            // One of the two on a joint is sufficient. Without the other, its size would be wrong.
+            let on_joint = |other: &&Member| {
+                let joint = |member: &Member| study.candidates[member.candidate].joint;
+                is_changed_friction(other) && joint(other) == joint(member)
+            };
+            let most = members.iter().filter(on_joint).map(|other| other.evidence);
+            return most.fold(0.0, f64::max) < study.thresholds.least_evidence;
+        }
+        if is_baseline(member) {
             // If the unmodelled forms on the joint are larger, a rotor inertia may be a part of what they represent.
             return hypothesis(member).is_drive_inertia() && share < unmodelled.max(LEAST_DRIVE);
         }
@@ -291,9 +306,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             let others = |certain: bool| {
                 let is_other = |m: &Member| {
                     let hypothesis = hypothesis(m);
-                    let is_known = is_named(m)
-                        && !hypothesis.spec().is_baseline
-                        && hypothesis.spec().is_certain_in_form == certain;
+                    let is_known = is_named(m) && !is_baseline(m) && hypothesis.spec().is_certain_in_form == certain;
                     m.candidate != member.candidate && is_known
                 };
                 largest(&is_other, joint)

@@ -66,7 +66,7 @@ fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn
 
 /// Whether a term is dry friction of a joint.
 fn is_dry(term: Term, joint: usize) -> bool {
-    !matches!(term.law.cone, Cone::No) && term.onset().is_none() && term.joint() == Some(joint)
+    !matches!(term.law.cone, Cone::No) && term.is_always() && term.joint() == Some(joint)
 }
 
 /// The errors on `joint`, nominal and with `fit`.

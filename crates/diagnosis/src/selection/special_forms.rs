@@ -1,6 +1,7 @@
 //! Special forms of wrong inertial parameters: effects that explain, beside links that differ less from the URDF, nearly as much as
 //! the correction of all links does without them.
 
+use effects::Acts;
 use rayon::prelude::*;
 
 use crate::regression::strengths::Strengths;
@@ -47,7 +48,7 @@ fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f6
         let candidate = &study.candidates[c];
         candidate.hypothesis.name().is_some()
             && candidate.hypothesis.spec().may_be_inertial
-            && problem.onset(candidate).is_none()
+            && problem.acts(candidate) == Acts::Always
             && !selected
                 .set
                 .iter()

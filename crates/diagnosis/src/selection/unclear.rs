@@ -1,6 +1,7 @@
 //! Effects that the final fit contradicts, or whose size or onset it leaves open.
 
 use effects::Effect;
+use effects::arm::Payload;
 use torque::Corrected;
 
 use crate::search::study::Study;
@@ -98,10 +99,14 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
         let first = named.first();
         first.is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
     };
+    // Wrong links do not excuse a body without mass that is new: they are the same before it was there.
+    let is_new_body =
+        |study: &Study, member: usize| study.candidates[member].hypothesis.is(&Payload) && !study.always_acts(member);
     let mut list = judged.named.set.clone();
     list.retain(|&member| {
         may_be(study, member)
-            && study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED
+            && (is_new_body(study, member)
+                || study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED)
     });
     list
 }

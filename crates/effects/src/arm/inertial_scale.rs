@@ -87,6 +87,10 @@ impl EffectKind for InertialScale {
         Some(Effect::of(&Self).with("factor", factor))
     }
 
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(a.clone().with("factor", a.number("factor") * b.number("factor")))
+    }
+
     fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
         machine.change_arm(|arm| arm.with_scaled_inertias(effect.number("factor")));
     }

@@ -63,6 +63,12 @@ impl EffectKind for LinkInertialError {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("relative", relative))
     }
 
+    /// Their factors are multiplied.
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        let [a_factor, b_factor] = [a, b].map(|effect| 1.0 + effect.number("relative"));
+        Some(a.clone().with("relative", a_factor * b_factor - 1.0))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.change_arm(|arm| arm.with_scaled_link(at.joint, 1.0 + effect.number("relative")));
     }

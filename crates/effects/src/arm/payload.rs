@@ -4,8 +4,8 @@ use ::arm::{Arm, Inertia, Matrix3, Vector3};
 
 use crate::fitted::moving_mass;
 use crate::{
-    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter,
-    Place, Quantity, Range, Scope, SetsIn, Shape, Spec, Systematic, Term,
+    Acts, Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine,
+    Parameter, Place, Quantity, Range, Scope, SetsIn, Shape, Spec, Systematic, Term,
 };
 
 /// A body fixed to the tool.
@@ -32,6 +32,7 @@ static SPEC: Spec = Spec {
             .remarked("kg m²: Ixx Ixy Iyy Ixz Iyz Izz about the centre of mass, along the tool's axes"),
     ],
     main: &["mass"],
+    may_end: true,
     // Both are a change of the last link's ten inertial parameters.
     excludes: &["link_inertial_error"],
     may_set_in: true,
@@ -171,8 +172,9 @@ impl EffectKind for Payload {
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
+        let is_of_before = matches!(fitted.term(0).acts, Acts::Until(_));
         if std::ptr::eq(fitted.term(0).law, &NOT_MOUNTED) {
-            return NOT_MOUNTED_RANGE.contains(&fitted.value(0));
+            return !is_of_before && NOT_MOUNTED_RANGE.contains(&fitted.value(0));
         }
         let mass = fitted.value(0);
         let reach = PAYLOAD_REACH * reach(fitted.arm());
@@ -180,7 +182,8 @@ impl EffectKind for Payload {
         let last = fitted.arm().joints().last().map_or(0.0, |joint| joint.inertia.mass);
         // A tool that the URDF draws and that is not mounted has a negative mass; the last link must keep a positive one.
         let is_there = mass > 0.0 && mass < MOST_PAYLOAD * moving_mass(fitted.arm());
-        let is_missing = mass < 0.0 && -mass < last;
+        // A tool that was mounted after the recordings from before is a payload since then.
+        let is_missing = !is_of_before && mass < 0.0 && -mass < last;
         (is_there || is_missing) && first < mass.abs() * reach
     }
 
@@ -195,7 +198,7 @@ impl EffectKind for Payload {
         });
         let read = |draw: &[f64]| places.map(|place| place.map_or(0.0, |place| draw[place]));
         // Wrong masses of the links are the same before a payload is picked up.
-        let always = terms.iter().all(|term| term.onset().is_none());
+        let always = terms.iter().all(Term::is_always);
         let systematic = if always { Systematic::OfLinks } else { Systematic::Usual };
         let mass = estimate.note_within(systematic, "mass", &|draw| read(draw)[0]);
         let mut com = [0.0; 3];
@@ -248,6 +251,14 @@ impl EffectKind for Payload {
             "the URDF draws a body at the tool that is not mounted: {mass}"
         } else {
             SPEC.sentence
+        }
+    }
+
+    fn before_it(&self, effect: &Effect) -> &'static str {
+        if effect.number("mass") < 0.0 {
+            "although it was in the recordings from before"
+        } else {
+            "absent in the recordings from before"
         }
     }
 

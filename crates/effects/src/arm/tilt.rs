@@ -161,6 +161,11 @@ impl EffectKind for GravityMisalignment {
         (!range.contains(length)).then_some(("axis' length", length, range.requirement()))
     }
 
+    /// Two of them add up, such as one of a file of known effects and one that is found in addition to it.
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a == b
+    }
+
     fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
         machine.change_arm(|arm| arm.with_turned_base(effect.vector("axis"), effect.number("angle")));
     }

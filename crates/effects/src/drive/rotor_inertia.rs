@@ -55,6 +55,10 @@ impl EffectKind for RotorInertia {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("inertia", inertia))
     }
 
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(a.clone().with("inertia", a.number("inertia") + b.number("inertia")))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.rotors[at.joint] += effect.number("inertia");
     }

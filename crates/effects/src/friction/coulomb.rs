@@ -19,6 +19,7 @@ static SPEC: Spec = Spec {
     sentence: "Coulomb friction of {level}",
     parameters: &[Parameter::new("level", Quantity::Torque).within(Range::NotNegative)],
     main: &["level"],
+    may_end: true,
     prior: 2.0,
     is_baseline: true,
     is_friction: true,
@@ -50,6 +51,10 @@ impl EffectKind for CoulombFriction {
 
     fn dry_friction(&self, effect: &Effect) -> Option<f64> {
         Some(effect.number("level"))
+    }
+
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(a.clone().with("level", a.number("level") + b.number("level")))
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

@@ -21,6 +21,7 @@ static SPEC: Spec = Spec {
         Parameter::new("exponent", Quantity::Ratio).or(2.0).remarked(""),
     ],
     main: &["coefficient"],
+    may_end: true,
     may_set_in: true,
     against: Against::Speed,
     detectability: Detectability::LINEAR,
@@ -78,6 +79,16 @@ impl EffectKind for QuadraticDrag {
         let onset = estimate.onset();
         let effect = Effect::of(&Self).on(estimate.joint_name()).since(onset);
         Some(effect.with("coefficient", coefficient).with("exponent", exponent))
+    }
+
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        let is_one_law = a.number("exponent") == b.number("exponent");
+        let sum = a.number("coefficient") + b.number("coefficient");
+        is_one_law.then(|| a.clone().with("coefficient", sum))
+    }
+
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a.number("exponent") == b.number("exponent")
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

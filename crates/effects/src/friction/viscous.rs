@@ -19,6 +19,7 @@ static SPEC: Spec = Spec {
     sentence: "viscous friction of {coefficient}",
     parameters: &[Parameter::new("coefficient", Quantity::Damping).within(Range::NotNegative)],
     main: &["coefficient"],
+    may_end: true,
     prior: 2.0,
     is_baseline: true,
     is_friction: true,
@@ -47,6 +48,13 @@ impl EffectKind for ViscousFriction {
         let coefficient = estimate.coefficient("coefficient", estimate.place(0), 1.0);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("coefficient", coefficient))
+    }
+
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(
+            a.clone()
+                .with("coefficient", a.number("coefficient") + b.number("coefficient")),
+        )
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

@@ -32,6 +32,7 @@ static SPEC: Spec = Spec {
         Parameter::new("angle", Quantity::Position),
     ],
     main: &["amplitude"],
+    may_end: true,
     excludes: &["spring", "own_position"],
     is_beyond_the_drive: true,
     against: Against::Position,
@@ -116,6 +117,11 @@ impl EffectKind for GravityCompensator {
         });
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("amplitude", amplitude).with("angle", angle))
+    }
+
+    /// Two of them add up, such as one of a file of known effects and one that is found in addition to it.
+    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
+        a == b
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

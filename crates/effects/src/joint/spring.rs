@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
             .remarked("rad, N m"),
     ],
     main: &["stiffness"],
+    may_end: true,
     may_be_inertial: true,
     may_set_in: true,
     generalises: Some("torque_offset"),
@@ -129,8 +130,17 @@ impl EffectKind for Spring {
     }
 
     /// A straight spring and a curve on one joint are not the same effect.
+    /// Two springs without a curve are one spring, with the zero of their common torque.
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        let have_no_curve = [a, b].iter().all(|spring| spring.points("curve").is_empty());
+        let stiffness = a.number("stiffness") + b.number("stiffness");
+        let torque = |spring: &Effect| spring.number("stiffness") * spring.number("rest");
+        let rest = (torque(a) + torque(b)) / stiffness;
+        (have_no_curve && rest.is_finite()).then(|| a.clone().with("stiffness", stiffness).with("rest", rest))
+    }
+
     fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a.points("curve").is_empty() == b.points("curve").is_empty()
+        a == b || [a, b].iter().all(|spring| spring.points("curve").is_empty())
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

@@ -65,6 +65,10 @@ impl EffectKind for EncoderOffset {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("offset", offset))
     }
 
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(a.clone().with("offset", a.number("offset") + b.number("offset")))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.encoder_offsets[at.joint] -= effect.number("offset");
     }

@@ -64,6 +64,10 @@ impl EffectKind for TorqueOffset {
         Some(effect.on(estimate.joint_name()).with("offset", offset))
     }
 
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(a.clone().with("offset", a.number("offset") + b.number("offset")))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         let offset = effect.number("offset");
         machine.add_torque(at.joint, effect.onset(), move |_, _| offset);

@@ -93,6 +93,10 @@ impl EffectKind for TorqueScale {
         Some(effect.on(estimate.joint_name()).with("factor", factor))
     }
 
+    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
+        Some(a.clone().with("factor", a.number("factor") * b.number("factor")))
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.factors.push(Scaled {
             joint: at.joint,

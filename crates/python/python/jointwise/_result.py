@@ -61,6 +61,8 @@ class Effect:
     sentence: str
     since_before: bool
     """Whether it is present since the recordings from before."""
+    change: Optional[str]
+    """How it changed since then: "added", "increased", "removed" or "reduced"; the last two are in the recordings from before only."""
     sensor: Optional[str]
     """"motor_current" or "second_encoder", if that sensor shows it and the torque does not; None otherwise."""
     time: tuple[tuple[float, float], ...]
@@ -145,6 +147,7 @@ def _effect(finding: dict[str, Any]) -> Effect:
         ),
         sentence=finding["sentence"],
         since_before=finding.get("since_before", False),
+        change=finding.get("change"),
         sensor=finding.get("sensor"),
         time=tuple((start, end) for start, end in finding["where"]["time"]),
     )

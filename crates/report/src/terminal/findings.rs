@@ -28,9 +28,15 @@ pub fn columns(report: &Report) -> String {
     } else {
         ""
     };
+    let is_past = |finding: &Finding| !finding.acts_today();
+    let before = if report.findings.iter().any(is_past) {
+        "; (before) and (decrease): in the recordings from before only"
+    } else {
+        ""
+    };
     format!(
         "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \
-         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found{undetermined}{without_share}"
+         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found{undetermined}{without_share}{before}"
     )
 }
 

@@ -1,5 +1,6 @@
 //! Exchanges of members for better ones.
 
+use effects::Acts;
 use rayon::prelude::*;
 
 use super::{Growth, Problem, Selection};
@@ -61,7 +62,7 @@ impl Problem<'_> {
             .iter()
             .find_map(|&c| Some((c, spec(c).same_on_all_joints?)));
         let (factor, constant) = common?;
-        let is_constant = |c: &usize| spec(*c).name == constant && self.onset(&self.candidates[*c]).is_none();
+        let is_constant = |c: &usize| spec(*c).name == constant && self.acts(&self.candidates[*c]) == Acts::Always;
         let named: Vec<Option<usize>> = selected
             .set
             .iter()

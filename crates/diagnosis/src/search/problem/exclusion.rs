@@ -1,6 +1,6 @@
 //! Candidates that exclude each other.
 
-use effects::Term;
+use effects::Acts;
 
 use super::Problem;
 use crate::search::candidate::Candidate;
@@ -14,24 +14,28 @@ impl Problem<'_> {
         if place(a) != place(b) {
             return false;
         }
-        // A candidate with an onset is in addition to one that always acts.
-        if self.onset(a).is_some() != self.onset(b).is_some() {
-            return false;
+        let ([when, then], is_one_effect) = (
+            [a, b].map(|candidate| self.acts(candidate)),
+            a.hypothesis.kind == b.hypothesis.kind && a.joint == b.joint,
+        );
+        if !when.is_like(then) {
+            // What begins or ends is in addition to what always acts. What ends and begins anew always acts, and changes.
+            return is_one_effect && when != Acts::Always && then != Acts::Always;
         }
         let ([first, second], [one, other]) = (
             [a, b].map(|c| &self.table.terms[c.columns[0]]),
             [a.hypothesis, b.hypothesis],
         );
-        if one.kind == other.kind && a.joint == b.joint {
+        if is_one_effect {
             one.other == other.other && one.kind.get().is_same(first, second)
         } else {
             one.spec().excludes.contains(&other.spec().name) || other.spec().excludes.contains(&one.spec().name)
         }
     }
 
-    /// The onset of a candidate (s); `None` if it always acts.
-    pub fn onset(&self, candidate: &Candidate) -> Option<f64> {
-        let mut terms = candidate.columns.iter().map(|&column| &self.table.terms[column]);
-        terms.find_map(Term::onset)
+    /// When a candidate acts.
+    pub fn acts(&self, candidate: &Candidate) -> Acts {
+        let mut terms = candidate.columns.iter().map(|&column| self.table.terms[column].acts);
+        terms.find(|acts| *acts != Acts::Always).unwrap_or(Acts::Always)
     }
 }

@@ -19,7 +19,7 @@ pub struct About {
     pub offset: Vec<f64>,
     /// The arm without the background's changes of inertial parameters; `None` if there are none.
     pub bare: Option<Arm>,
-    /// The terms that it contains, with their coefficients.
+    /// The terms that it contains at any time, with their coefficients.
     pub carried: Vec<(Term, f64)>,
 }
 
@@ -35,7 +35,7 @@ impl About {
     pub fn stages(data: &Data, table: &Table, fit: &Fit) -> Vec<(f64, Self)> {
         let carried = |&column: &usize| table.terms[column].law.carry.is_some();
         let columns = fit.columns.iter().filter(|column| carried(column));
-        let mut times: Vec<f64> = columns.filter_map(|&column| table.terms[column].onset()).collect();
+        let mut times: Vec<f64> = columns.filter_map(|&column| table.terms[column].changes_at()).collect();
         times.push(f64::NEG_INFINITY);
         times.sort_by(f64::total_cmp);
         times.dedup();
@@ -132,8 +132,8 @@ pub fn inertial_changes(data: &Data, table: &Table, fit: &Fit) -> Vec<f64> {
     changes
 }
 
-/// Adds the effects of `fit` that act at the time `at` (s) to the arm; returns the terms that it then contains, with their
-/// coefficients.
+/// Adds the effects of `fit` that act at the time `at` (s) to the arm; returns the terms that it contains at this time or at another,
+/// with their coefficients. The columns of a term are zero while it does not act.
 fn collected(data: &Data, table: &Table, fit: &Fit, at: f64) -> (Carried, Vec<(Term, f64)>) {
     let mut found = Carried {
         arm: data.arm.clone(),
@@ -145,9 +145,10 @@ fn collected(data: &Data, table: &Table, fit: &Fit, at: f64) -> (Carried, Vec<(T
     let mut carried = Vec::new();
     for (&column, &value) in fit.columns.iter().zip(&fit.coefficients) {
         let term = table.terms[column];
-        let acts = term.onset().is_none_or(|onset| onset <= at);
-        if let (Some(carry), true) = (term.law.carry, acts) {
-            carry(&term, value, &mut found);
+        if let Some(carry) = term.law.carry {
+            if term.acts.at(at) {
+                carry(&term, value, &mut found);
+            }
             carried.push((term, value));
         }
     }

@@ -183,7 +183,7 @@ impl Study {
             .iter()
             .zip(&fit.coefficients)
             .map(|(&column, &value)| (self.table.terms[column], value))
-            .filter(|(term, _)| term.law.carry.is_none() && term.law.link_side.is_none() && term.onset().is_none())
+            .filter(|(term, _)| term.law.carry.is_none() && term.law.link_side.is_none() && term.is_always())
             .collect();
         let rest = |chunk: &Chunk, rigid: &Rigid, joint: usize| {
             let mut sum = vec![0.0; chunk.ticks()];

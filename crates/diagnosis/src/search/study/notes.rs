@@ -1,14 +1,21 @@
 //! The study's decisions, as rows of the record.
 
+use effects::Acts;
+
 use super::Study;
 use crate::search::problem::Selection;
 use crate::trace::Action;
 
 impl Study {
     fn described(&self, candidate: usize) -> (String, Option<String>) {
+        let acts = match Acts::of(&self.terms(candidate)) {
+            Acts::Always => "",
+            Acts::Since(_) => " since an onset",
+            Acts::Until(_) => " until the change",
+        };
         let candidate = &self.candidates[candidate];
         let joint = candidate.joint.map(|joint| self.data.arm.joints()[joint].name.clone());
-        (candidate.hypothesis.spec().name.to_owned(), joint)
+        (format!("{}{acts}", candidate.hypothesis.spec().name), joint)
     }
 
     /// Records the decisions that lead from `before` to `after` by `rule`.

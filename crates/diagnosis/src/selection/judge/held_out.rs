@@ -1,5 +1,6 @@
 //! Removal of effects that do not predict recordings they were not fitted to.
 
+use effects::Acts;
 use rayon::prelude::*;
 
 use super::{HARMS, harms, is_idle};
@@ -12,7 +13,9 @@ pub fn predicting(problem: &Problem<'_>, held: &Products, mut selected: Selectio
     let hypothesis = |c: usize| problem.candidates[c].hypothesis;
     let loss = |selected: &Selection| held.loss_of(problem.table, &selected.fit);
     let simple: Vec<usize> = (0..problem.candidates.len())
-        .filter(|&c| hypothesis(c).spec().is_baseline_or_constant)
+        .filter(|&c| {
+            hypothesis(c).spec().is_baseline_or_constant && problem.acts(&problem.candidates[c]) == Acts::Always
+        })
         .collect();
     loop {
         let with = loss(&selected);

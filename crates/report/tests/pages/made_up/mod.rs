@@ -100,6 +100,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 state: (row.0 == "coulomb_friction").then(|| "within 0.05 rad/s of a reversal".into()),
             },
             since_before: false,
+            change: None,
             sensor: None,
             sentence: format!(
                 "{}: {} of {main} {value}; held-out error 0.94 → 0.12.",

@@ -1,0 +1,180 @@
+//! What changed since the recordings from before.
+
+mod support;
+
+use arm::{Arm, Inertia, Workspace};
+use diagnosis::{Change, Diagnosis, Finding, Input, Options, diagnose};
+use effects::arm::Payload;
+use effects::friction::CoulombFriction;
+use recording::RegularRecording;
+use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, regular, sentences, start, trio};
+
+/// The diagnosis of four recordings, two of which are from before. The last is held out.
+fn diagnosed(recordings: &[RegularRecording]) -> Diagnosis {
+    let input = |(number, recording)| Input {
+        name: ["a", "b", "c", "d"][number],
+        recording,
+        held_out: number == 3,
+        before: number < 2,
+    };
+    let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
+    diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed")
+}
+
+/// The diagnosis of recordings with the effects `injected`.
+fn with(injected: Injected<'_>) -> Diagnosis {
+    let recorded = |variant| regular(&support::recorded(&trio(), variant, 16.0, injected));
+    diagnosed(&(0..4).map(recorded).collect::<Vec<_>>())
+}
+
+/// Whether a motion is after the change.
+fn is_after(motion: &Motion) -> bool {
+    motion.clock >= start(2)
+}
+
+/// The findings that changed, as effect, joint and change.
+fn changes(diagnosis: &Diagnosis) -> Vec<(&Finding, &str, Option<&str>, Change)> {
+    let list = diagnosis.report.findings.iter();
+    let changed = list.filter_map(|f| Some((f, f.effect, f.joint.as_deref(), f.change?)));
+    let changed: Vec<_> = changed.collect();
+    let told = diagnosis.report.changed.as_ref().map_or(0, Vec::len);
+    assert_eq!(told, changed.len(), "{:?}", sentences(diagnosis));
+    changed
+}
+
+/// The sum of the levels of Coulomb friction on a joint that the corrected model has (N m).
+fn level(diagnosis: &Diagnosis, joint: &str) -> f64 {
+    let of_joint = |effect: &&effects::Effect| effect.is(&CoulombFriction) && effect.joint() == Some(joint);
+    let levels = diagnosis.effects.iter().filter(of_joint).map(|effect| {
+        assert_eq!(effect.onset(), None, "today it always acts");
+        effect.number("level")
+    });
+    levels.sum()
+}
+
+/// Friction that grew is in addition to that from before, and friction that fell is found as well. The corrected model has
+/// that of today.
+#[test]
+fn friction_that_grew_or_fell_is_found() {
+    for (before, after, change) in [(0.5, 1.1, Change::Increased), (1.3, 0.5, Change::Reduced)] {
+        let diagnosis = with(&|motion, tau| {
+            baseline_friction(motion, tau);
+            let level = if is_after(motion) { after } else { before };
+            tau[ELBOW] += level * motion.qd[ELBOW].signum();
+        });
+        let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else {
+            panic!("{:?}", sentences(&diagnosis))
+        };
+        assert_eq!((effect, joint, found), ("coulomb_friction", Some("elbow"), change));
+        let size = finding.parameters["level"].value;
+        assert!((size / f64::abs(after - before) - 1.0).abs() < 0.05, "{size}");
+        // Baseline friction has a level of its own.
+        let today = level(&diagnosis, "elbow") - 0.6;
+        assert!((today / after - 1.0).abs() < 0.05, "{today} instead of {after}");
+    }
+}
+
+/// A spring that broke is in the recordings from before only, and the corrected model does not contain it.
+#[test]
+fn a_spring_that_broke_is_found() {
+    let diagnosis = with(&|motion, tau| {
+        baseline_friction(motion, tau);
+        if !is_after(motion) {
+            tau[SHOULDER] += 6.0 * (motion.q[SHOULDER] - 0.2);
+        }
+    });
+    let [(finding, effect, joint, change)] = changes(&diagnosis)[..] else {
+        panic!("{:?}", sentences(&diagnosis))
+    };
+    assert_eq!((effect, joint, change), ("spring", Some("shoulder"), Change::Removed));
+    let stiffness = finding.parameters["stiffness"].value;
+    assert!((stiffness / 6.0 - 1.0).abs() < 0.05, "{stiffness}");
+    assert!(diagnosis.effects.iter().all(|effect| effect.name() != "spring"));
+}
+
+/// A load that was taken off may be heavier than the last link. The model without it is right, so that no payload and no link is wrong.
+#[test]
+fn a_load_that_was_taken_off_is_no_error_of_the_model() {
+    let last = trio().joints().last().map_or(0.0, |joint| joint.inertia.mass);
+    let mass = 1.5 * last;
+    let diagnosis = changed_load(&load(mass), [1.0; 3], 0.0, |motion| !is_after(motion));
+    let [(finding, effect, joint, change)] = changes(&diagnosis)[..] else {
+        panic!("{:?}", sentences(&diagnosis))
+    };
+    assert_eq!((effect, joint, change), ("payload", None, Change::Removed));
+    let found = finding.parameters["mass"].value;
+    assert!((found / mass - 1.0).abs() < 0.02, "{found} instead of {mass}");
+    assert!(!finding.since_before && !diagnosis.effects.iter().any(|effect| effect.is(&Payload)));
+    let others = diagnosis
+        .report
+        .findings
+        .iter()
+        .filter(|other| other.effect != "payload");
+    assert!(
+        others.clone().all(|other| other.effect.ends_with("friction")),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+}
+
+/// A body of `mass` (kg) on the tool.
+fn load(mass: f64) -> Inertia {
+    Inertia {
+        mass,
+        com: arm::Vector3::new(0.02, -0.01, 0.08),
+        tensor: arm::Matrix3::identity() * (2e-3 * mass / 1.2),
+    }
+}
+
+/// The diagnosis of a robot with `load` in the motions that `is_loaded` selects, whose torques are recorded with these `factors`. Each
+/// recording has a `pause` (s).
+fn changed_load(load: &Inertia, factors: [f64; 3], pause: f64, is_loaded: impl Fn(&Motion) -> bool) -> Diagnosis {
+    let loaded: Arm = trio().with_payload(load);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        if is_loaded(motion) {
+            let mut workspace = Workspace::new(&loaded);
+            loaded.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
+        }
+        baseline_friction(motion, tau);
+        for (tau, factor) in tau.iter_mut().zip(factors) {
+            *tau *= factor;
+        }
+    };
+    let recording = |variant: usize| {
+        let mut recording = support::recorded(&trio(), variant, 16.0, &injected);
+        let second_half = recording.time.len() / 2;
+        recording
+            .time
+            .iter_mut()
+            .skip(second_half)
+            .for_each(|time| *time += pause);
+        regular(&recording)
+    };
+    let recordings: Vec<RegularRecording> = (0..4).map(recording).collect();
+    diagnosed(&recordings)
+}
+
+/// The mass of a payload of 1.2 kg that was added after the recordings from before. Checks that no other change is found.
+fn new_payload(factors: [f64; 3], pause: f64) -> diagnosis::Parameter {
+    let diagnosis = changed_load(&load(1.2), factors, pause, is_after);
+    let [(finding, effect, None, Change::Added)] = changes(&diagnosis)[..] else {
+        panic!("{:?}", sentences(&diagnosis))
+    };
+    assert_eq!((effect, finding.since_before), ("payload", true));
+    finding.parameters["mass"]
+}
+
+/// Torque constants that are wrong by a few per cent also apply to the torque of a new payload. Therefore no torque scale
+/// is found to have changed, and the mass is as uncertain as the constants.
+#[test]
+fn torque_constants_also_apply_to_a_new_payload() {
+    let [low, high] = new_payload([1.05, 0.94, 1.08], 0.0).ci95;
+    assert!(low <= 1.2 && 1.2 <= high, "{low} … {high}");
+}
+
+/// Pauses in recordings from before also count as time before the change.
+#[test]
+fn pauses_of_recordings_from_before_are_before_the_change() {
+    let mass = new_payload([1.0; 3], 100.0);
+    assert!((mass.value / 1.2 - 1.0).abs() < 0.02, "{mass:?}");
+}
