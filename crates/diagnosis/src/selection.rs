@@ -23,6 +23,7 @@ pub mod identified;
 pub mod judge;
 pub mod naming;
 pub mod of_noise;
+mod possible_load;
 pub mod predict;
 pub mod rivals;
 pub mod special_forms;

@@ -2,9 +2,12 @@
 
 mod support;
 
-use arm::{Arm, Workspace};
+use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options};
-use support::{Injected, Motion, baseline_friction, diagnosed, diagnosed_with, sentences, trio};
+use effects::arm::{Payload, exists};
+use support::{
+    Injected, Motion, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
+};
 
 /// The findings beside plain friction: effect and joint.
 fn named(robot: &Arm, injected: Injected<'_>) -> Vec<(String, Option<String>)> {
@@ -132,7 +135,7 @@ fn what_improves_the_fit_beside_a_common_factor_is_not_its_alternative() {
 fn a_centre_of_mass_off_is_named_on_its_link() {
     for (link, off) in [(1, [0.0, 0.0, 0.03]), (1, [0.03, 0.0, 0.0]), (2, [0.0, 0.0, 0.03])] {
         let mut body = trio().joints()[link].inertia;
-        body.com += arm::Vector3::from(off);
+        body.com += Vector3::from(off);
         let robot = trio().with_link_inertia(link, body);
         let diagnosis = diagnosed(
             &trio(),
@@ -197,11 +200,11 @@ fn loaded(mass: f64, com: [f64; 3], factors: [f64; 6], off: [f64; 3]) -> Diagnos
         arm.with_scaled_link(link, factor)
     });
     let mut upper_arm = links.joints()[1].inertia;
-    upper_arm.com += arm::Vector3::from(off);
-    let robot = links.with_link_inertia(1, upper_arm).with_payload(&arm::Inertia {
+    upper_arm.com += Vector3::from(off);
+    let robot = links.with_link_inertia(1, upper_arm).with_payload(&Inertia {
         mass,
-        com: arm::Vector3::from(com),
-        tensor: arm::Matrix3::identity() * 2e-3,
+        com: Vector3::from(com),
+        tensor: Matrix3::identity() * 2e-3,
     });
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         for (tau, qd) in tau.iter_mut().zip(&motion.qd) {
@@ -277,15 +280,15 @@ fn wrong_everywhere(seed: u64, strength: f64, payload: f64) -> Diagnosis {
         let mut inertia = robot.joints()[link].inertia;
         let factor = (strength * draw(4 * link)).exp();
         let size = 0.1;
-        inertia.com += size * strength * arm::Vector3::new(draw(4 * link + 1), draw(4 * link + 2), draw(4 * link + 3));
+        inertia.com += size * strength * Vector3::new(draw(4 * link + 1), draw(4 * link + 2), draw(4 * link + 3));
         inertia.mass *= factor;
         inertia.tensor *= factor;
         robot = robot.with_link_inertia(link, inertia);
     }
-    let robot = robot.with_payload(&arm::Inertia {
+    let robot = robot.with_payload(&Inertia {
         mass: payload,
-        com: arm::Vector3::zeros(),
-        tensor: arm::Matrix3::identity() * 1e-3 * payload,
+        com: Vector3::zeros(),
+        tensor: Matrix3::identity() * 1e-3 * payload,
     });
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         for (tau, qd) in tau.iter_mut().zip(&motion.qd) {
@@ -311,4 +314,47 @@ fn a_payload_at_the_centre_of_a_wrist_is_an_alternative_of_wrong_links() {
         .filter(|finding| finding.effect == "inertial_parameters");
     let mut alternatives = links.flat_map(|links| &links.confusable_with);
     assert!(alternatives.any(|other| other.effect == "payload"), "{findings:?}");
+}
+
+/// Three vertical axes, about which only one moment of inertia of a load has a torque.
+const FLAT: &str = r#"<robot name="flat"><link name="base"/>
+<joint name="a" type="continuous"><parent link="base"/><child link="la"/><axis xyz="0 0 1"/></joint>
+<link name="la"><inertial><origin xyz=".2 0 0"/><mass value="4"/><inertia ixx=".05" ixy="0" ixz="0" iyy=".05" iyz="0" izz=".06"/></inertial></link>
+<joint name="b" type="continuous"><origin xyz=".4 0 0"/><parent link="la"/><child link="lb"/><axis xyz="0 0 1"/></joint>
+<link name="lb"><inertial><origin xyz=".15 0 0"/><mass value="3"/><inertia ixx=".03" ixy="0" ixz="0" iyy=".03" iyz="0" izz=".04"/></inertial></link>
+<joint name="c" type="continuous"><origin xyz=".3 0 0"/><parent link="lb"/><child link="lc"/><axis xyz="0 0 1"/></joint>
+<link name="lc"><inertial><mass value=".5"/><inertia ixx=".001" ixy="0" ixz="0" iyy=".001" iyz="0" izz=".001"/></inertial></link>
+</robot>"#;
+
+/// Moments of inertia that the recordings do not determine become possible, and those that they determine are kept. The whole tensor
+/// was left out, so that the corrected model had another torque than the fit.
+#[test]
+fn a_determined_moment_of_a_load_is_exported() {
+    let arm = Arm::from_urdf_text(FLAT, "flat.urdf").expect("it is an arm");
+    let load = Inertia {
+        mass: 1.5,
+        com: Vector3::new(0.06, -0.03, 0.05),
+        tensor: Matrix3::from_diagonal(&Vector3::new(8e-3, 9e-3, 1.2e-2)),
+    };
+    let injected = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
+    let robot = arm.clone().with_payload(&load);
+    let diagnosis = diagnosed(&arm, &robot, &injected, Vec::new());
+    let payload = diagnosis.effects.iter().find(|effect| effect.is(&Payload));
+    let payload = Payload::inertia(payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))));
+    assert!((payload.mass / load.mass - 1.0).abs() < 0.02, "{payload:?}");
+    assert!((payload.tensor[(2, 2)] / 1.2e-2 - 1.0).abs() < 0.1, "{payload:?}");
+    assert!(
+        exists(payload.mass, &(payload.tensor + Matrix3::identity() * 1e-9)),
+        "{payload:?}"
+    );
+    let again = diagnosed(&arm, &robot, &injected, diagnosis.effects.clone());
+    exports_what_it_reports(&diagnosis, &again, 0.05);
+    for (joint, fit) in &diagnosis.report.fit {
+        let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
+        let reported = fit.held_out_nrmse_augmented.expect("it is moved");
+        assert!(
+            (exported - reported).abs() < 2e-3,
+            "{joint}: {exported} instead of {reported}"
+        );
+    }
 }

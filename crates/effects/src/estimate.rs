@@ -1,6 +1,6 @@
 //! A candidate's estimated coefficients, as an effect reads its parameters from them.
 
-use arm::{Arm, Joint};
+use arm::{Arm, Joint, Matrix3};
 
 use crate::laws::SIGN;
 use crate::term::{Law, Size, Term};
@@ -53,6 +53,9 @@ pub trait Estimate {
 
     /// The estimate, as a draw.
     fn best(&self) -> &[f64];
+
+    /// The tensor about its centre of mass of a payload whose moments are not fitted (kg m²): the one that the fit assumes.
+    fn load_tensor(&self) -> Matrix3<f64>;
 
     /// Records a parameter that is a function of a draw, with its interval; returns its value.
     fn note_within(&mut self, systematic: Systematic, key: &'static str, f: &dyn Fn(&[f64]) -> f64) -> f64;

@@ -117,7 +117,7 @@ pub mod arm {
     pub use inertial_parameters::{InertialParameters, PARAMETER as INERTIAL_PARAMETER};
     pub use inertial_scale::InertialScale;
     pub use link_error::LinkInertialError;
-    pub use payload::{Payload, body};
+    pub use payload::{PARAMETER as PAYLOAD_PARAMETER, Payload, body, exists};
     pub use tilt::GravityMisalignment;
 }
 

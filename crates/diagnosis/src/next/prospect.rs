@@ -89,7 +89,7 @@ impl<'a> Prospect<'a> {
         }
         Some(Self {
             last,
-            about: About::last(data, table, fit),
+            about: About::last(data, table, fit, &last.study.load_tensor),
             nominal: data.arm.inertial_parameters(),
             derivatives: terms.iter().any(needs),
             grid: (period, Kernel::new(data.motions.cutoff, period), stride),

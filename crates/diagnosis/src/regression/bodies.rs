@@ -1,11 +1,18 @@
 //! Bodies by their ten inertial parameters: pseudo-inertias, the metric between them, and physical consistency.
 
+mod nearest;
+
+pub use nearest::nearest_tensor;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Matrix4, SymmetricEigen};
 
 use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS, LEAST_OF_STEP};
 
 /// Parameters of a link: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PER_LINK: usize = 10;
+/// The number of them that are not moments of inertia; they come first.
+pub const WITHOUT_MOMENTS: usize = 4;
+
 /// The pseudo-inertia \[Σ, m c; (m c)ᵀ, m\] of ten inertial parameters, Σ = ½ tr(I) 1 − I.
 pub fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
     let [m, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters else {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use arm::Matrix3;
 use effects::arm::contact_columns;
 use effects::laws::SIGN;
 use effects::{Grounds, Term};
@@ -63,6 +64,10 @@ pub struct Study {
     pub thresholds: Thresholds,
     /// A load at the tip that only some of the recordings have.
     pub own_load: Option<OwnLoad>,
+    /// The effects in the arm about which the columns are evaluated, with their coefficients.
+    carried: Vec<(Term, f64)>,
+    /// The tensor about its centre of mass of a payload whose moments are not fitted (kg m²).
+    pub load_tensor: Matrix3<f64>,
     /// What may be named, if another search preceded; `None` allows everything.
     pub scope: Option<Scope>,
     /// The record of decisions.
@@ -208,6 +213,8 @@ impl Study {
             thresholds,
             prior,
             own_load: None,
+            carried: Vec::new(),
+            load_tensor: Matrix3::zeros(),
             scope: None,
             trace: Trace::default(),
             formed: Formed::default(),

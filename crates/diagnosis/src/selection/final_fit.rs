@@ -12,6 +12,7 @@ use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
+use crate::selection::possible_load;
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
@@ -61,6 +62,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                     study.give_up(payload);
                     drop_name(study, judged, payload, "it may have no moment about the tool's origin");
                 }
+                None if possible_load::make_possible(study, judged) => {}
                 None => return resampled,
             },
         }
@@ -70,6 +72,9 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
 /// Fits the named effects about the arm that contains them, and removes none.
 pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
     relinearise(study, judged, true);
+    if possible_load::make_possible(study, judged) {
+        relinearise(study, judged, true);
+    }
     resample(study, &judged.named)
 }
 

@@ -6,14 +6,13 @@ pub use onset::is_anywhere;
 
 use std::collections::BTreeMap;
 
-use arm::Arm;
-use effects::{Effect, Estimate, Kind, Law, Size, Spec, Systematic, Term};
-
 use crate::data::statistics::NORMAL_95;
 use crate::report::Parameter;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::thresholds::{OF_ARM, OF_FORM, SYSTEMATIC};
+use arm::{Arm, Matrix3};
+use effects::{Effect, Estimate, Kind, Law, Size, Spec, Systematic, Term};
 
 /// A named effect with its parameters.
 #[derive(Clone, Debug)]
@@ -95,6 +94,10 @@ impl Estimate for Reader<'_> {
 
     fn best(&self) -> &[f64] {
         &self.resampled.estimate
+    }
+
+    fn load_tensor(&self) -> Matrix3<f64> {
+        self.study.load_tensor
     }
 
     fn note_within(&mut self, systematic: Systematic, key: &'static str, f: &dyn Fn(&[f64]) -> f64) -> f64 {

@@ -109,6 +109,19 @@ fn tensor([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
+/// The six numbers of a tensor, in the order of [`tensor`].
+fn entries(tensor: &Matrix3<f64>) -> [f64; 6] {
+    [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at])
+}
+
+/// Whether a body may have this tensor: its second moments Σ = ½ tr(I) 1 − I are not negative. A missing body has a negative mass and the
+/// negative of a tensor.
+pub fn exists(mass: f64, tensor: &Matrix3<f64>) -> bool {
+    let of_body = tensor * mass.signum();
+    let second_moments = Matrix3::identity() * (0.5 * of_body.trace()) - of_body;
+    second_moments.symmetric_eigenvalues().min() >= 0.0
+}
+
 impl Payload {
     /// The payload that the absence of the `k`-th fixed body is: negative, with the URDF's centre of mass.
     fn read_not_mounted(estimate: &mut dyn Estimate, k: usize) -> Option<Effect> {
@@ -119,7 +132,7 @@ impl Payload {
             estimate.note(key, |_| drawn.com[axis]);
         }
         let tensor = drawn.tensor * (mass / drawn.mass);
-        let inertia = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at]);
+        let inertia = entries(&tensor);
         let com: [f64; 3] = drawn.com.into();
         let effect = Effect::of(&Self).with("mass", mass).with("com", com);
         Some(effect.with("inertia", inertia).since(estimate.onset()))
@@ -208,15 +221,12 @@ impl EffectKind for Payload {
                 parameters[1 + k] / parameters[0]
             });
         }
-        // An impossible tensor means that the recordings do not determine it.
-        let tensor = body(&read(estimate.best())).tensor;
-        let moments = tensor.symmetric_eigenvalues();
-        let possible = places[4].is_some() && moments.iter().all(|&value| value * mass >= 0.0);
-        let inertia = if possible {
-            [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at])
-        } else {
-            [0.0; 6]
+        let inertia = match places[4] {
+            Some(_) => Some(body(&read(estimate.best())).tensor).filter(|tensor| exists(mass, tensor)),
+            None => Some(estimate.load_tensor()),
         };
+        let inertia = inertia.unwrap_or_else(Matrix3::zeros);
+        let inertia = entries(&inertia);
         let effect = Effect::of(&Self).with("mass", mass).with("com", com);
         Some(effect.with("inertia", inertia).since(estimate.onset()))
     }

@@ -1,6 +1,6 @@
 //! The arm of a fit, about which columns are linearised: the remaining tilts, encoder offsets and payloads are small.
 
-use arm::{Arm, Inertia, Vector3};
+use arm::{Arm, Inertia, Matrix3, Vector3};
 use effects::arm::{INERTIAL_PARAMETER, body};
 use effects::{Carried, Term};
 
@@ -29,23 +29,23 @@ impl About {
         collected(data, table, fit, f64::NEG_INFINITY).0.arm
     }
 
-    /// The arm of `data` with the effects of `fit`, after each of their onsets: the times from which each one is right (s), ascending
+    /// The arm of `data` with the effects of `fit`, where `load` is the tensor of a payload without moments in the fit, after each of their onsets: the times from which each one is right (s), ascending
     /// from −∞ on. Torque constants, and other effects that depend on the joints' torques, then also act on the torque of a payload
     /// that was picked up on the way.
-    pub fn stages(data: &Data, table: &Table, fit: &Fit) -> Vec<(f64, Self)> {
+    pub fn stages(data: &Data, table: &Table, fit: &Fit, load: &Matrix3<f64>) -> Vec<(f64, Self)> {
         let carried = |&column: &usize| table.terms[column].law.carry.is_some();
         let columns = fit.columns.iter().filter(|column| carried(column));
         let mut times: Vec<f64> = columns.filter_map(|&column| table.terms[column].changes_at()).collect();
         times.push(f64::NEG_INFINITY);
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let stage = |at: f64| (at, Self::with(data, table, fit, collected(data, table, fit, at)));
+        let stage = |at: f64| (at, Self::with(data, table, fit, collected(data, table, fit, at), load));
         times.into_iter().map(stage).collect()
     }
 
-    /// The arm of `data` with all effects of `fit`, as it is after the recordings.
-    pub fn last(data: &Data, table: &Table, fit: &Fit) -> Self {
-        Self::with(data, table, fit, collected(data, table, fit, f64::INFINITY))
+    /// The arm of `data` with all effects of `fit`, as it is after the recordings; `load` as for [`Self::stages`].
+    pub fn last(data: &Data, table: &Table, fit: &Fit, load: &Matrix3<f64>) -> Self {
+        Self::with(data, table, fit, collected(data, table, fit, f64::INFINITY), load)
     }
 
     /// The rigid model along `chunk` of an arm with these stages; the links' shares are those of links with the inertial parameters
@@ -77,7 +77,13 @@ impl About {
         rigid
     }
 
-    fn with(data: &Data, table: &Table, fit: &Fit, (found, carried): (Carried, Vec<(Term, f64)>)) -> Self {
+    fn with(
+        data: &Data,
+        table: &Table,
+        fit: &Fit,
+        (found, carried): (Carried, Vec<(Term, f64)>),
+        load: &Matrix3<f64>,
+    ) -> Self {
         let inertial = inertial_changes(data, table, fit);
         let Carried {
             mut arm,
@@ -89,7 +95,11 @@ impl About {
         let tilt = Vector3::new(x, y, 0.0);
         let finish = |mut arm: Arm| {
             if payload[0] != 0.0 {
-                arm = arm.with_payload(&body(&payload));
+                let mut body = body(&payload);
+                if payload[4..].iter().all(|&moment| moment == 0.0) {
+                    body.tensor = *load;
+                }
+                arm = arm.with_payload(&body);
             }
             if gravity != [0.0; 3] {
                 let turned = arm.gravity() + Vector3::from(gravity);

@@ -128,7 +128,7 @@ impl Study {
 
     fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
         self.set_bodies(fit);
-        let stages = About::stages(&self.data, &self.table, fit);
+        let stages = About::stages(&self.data, &self.table, fit, &self.load_tensor);
         let last = &stages[stages.len() - 1].1;
         // The arm contains no effect, neither of this fit nor of an earlier selection.
         let carries = !last.carried.is_empty() || last.bare.is_some();
@@ -136,6 +136,7 @@ impl Study {
             return None;
         }
         self.carries = carries;
+        self.carried.clone_from(&last.carried);
         let nominal = self.data.arm.inertial_parameters();
         let rigid: Vec<Rigid> = self
             .data
@@ -200,8 +201,30 @@ impl Study {
             .collect()
     }
 
-    /// Whether the torques of the drives are those of `fit`, as far as a torque constant that changes multiplies them.
+    /// Whether the arm about which the columns are evaluated has settled: it contains the effects of `fit`, and the torques of the drives are
+    /// those of `fit`, as far as a torque constant that changes multiplies them.
     pub fn has_settled(&self, fit: &Fit) -> bool {
+        self.have_drives_settled(fit) && self.has_arm_settled(fit)
+    }
+
+    fn has_arm_settled(&self, fit: &Fit) -> bool {
+        let mut columns = fit.selected().to_vec();
+        columns.retain(|&column| self.table.terms[column].law.carry.is_some());
+        let before = |column: usize| {
+            let known = self.carried.iter().find(|(term, _)| *term == self.table.terms[column]);
+            known.map_or(0.0, |(_, value)| *value)
+        };
+        let change: Vec<f64> = columns
+            .iter()
+            .map(|&column| fit.coefficient(column) - before(column))
+            .collect();
+        (0..self.data.motions.dof).all(|joint| {
+            let torque = self.table.torque(joint, &columns, &change);
+            rms(torque.into_iter()).unwrap_or(0.0) <= SETTLED * self.data.scales.torque[joint]
+        })
+    }
+
+    fn have_drives_settled(&self, fit: &Fit) -> bool {
         let changes = |&column: &usize| {
             let term = self.table.terms[column];
             (term.always().is(&RIGID) && term.onset().is_some())

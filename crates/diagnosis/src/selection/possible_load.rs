@@ -1,0 +1,56 @@
+//! Payloads whose moments of inertia no body has, because the recordings do not determine all of them.
+
+use effects::arm::{PAYLOAD_PARAMETER, Payload, body, exists};
+use nalgebra::Matrix6;
+
+use crate::regression::bodies::{PER_LINK, WITHOUT_MOMENTS, nearest_tensor};
+use crate::search::study::Study;
+use crate::selection::judge::{self, Judged};
+
+/// Gives the payload, if its moments are impossible, the possible ones that the recordings contradict least: it is replaced by the
+/// payload without moments in the fit, which has them as its tensor. Returns whether a payload was replaced.
+pub fn make_possible(study: &mut Study, judged: &mut Judged) -> bool {
+    let payloads = |&c: &usize| study.candidates[c].hypothesis.is(&Payload);
+    let mut payloads = judged.named.set.iter().copied().filter(payloads);
+    // Two payloads have one tensor in the fit, if neither has moments.
+    let (Some(payload), None) = (payloads.next(), payloads.next()) else {
+        return false;
+    };
+    let columns = study.candidates[payload].columns.clone();
+    let is_free = study.table.terms[columns[0]].always().is(&PAYLOAD_PARAMETER);
+    if columns.len() != PER_LINK || !is_free {
+        return false;
+    }
+    let values: [f64; PER_LINK] = std::array::from_fn(|k| judged.named.fit.coefficient(columns[k]));
+    let (mass, tensor) = (values[0], body(&values).tensor);
+    if exists(mass, &tensor) {
+        return false;
+    }
+    let is_same = |&c: &usize| {
+        let other = &study.candidates[c];
+        other.columns[..] == columns[..WITHOUT_MOMENTS] && other.hypothesis == study.candidates[payload].hypothesis
+    };
+    let Some(without) = (0..study.candidates.len()).find(is_same) else {
+        return false;
+    };
+    let products = study.training_products();
+    // The moments last, so that everything else adapts to them.
+    let mut all = judged.named.fit.selected().to_vec();
+    all.retain(|column| !columns.contains(column));
+    all.extend(&columns);
+    let fit = products.solve(&study.table, &all, &judged.named.fit.weights);
+    let information = fit.information_of_last(PER_LINK - WITHOUT_MOMENTS);
+    let precision = Matrix6::from_fn(|i, k| information[(i, k)]);
+    let Some(nearest) = nearest_tensor(&(tensor * mass.signum()), &precision) else {
+        return false;
+    };
+    let mut set = judged.named.set.clone();
+    set.iter_mut().filter(|c| **c == payload).for_each(|c| *c = without);
+    let problem = study.problem(&products);
+    let next = problem.choose(set, &judged.named.fit.weights);
+    study.note("no body has its moments of inertia", &judged.named, &next);
+    judged.members = judge::describe(&problem, &next);
+    judged.named = next;
+    study.load_tensor = nearest * mass.signum();
+    true
+}
