@@ -220,7 +220,7 @@ impl Study {
             .collect();
         (0..self.data.motions.dof).all(|joint| {
             let torque = self.table.torque(joint, &columns, &change);
-            rms(torque.into_iter()).unwrap_or(0.0) <= SETTLED * self.data.scales.torque[joint]
+            rms(torque).unwrap_or(0.0) <= SETTLED * self.data.scales.torque[joint]
         })
     }
 
