@@ -74,6 +74,73 @@ fn friction_that_grew_or_fell_is_found() {
     }
 }
 
+/// A constant torque that went away is in the recordings from before only. Half of it was taken for one of all recordings, which most
+/// sensors have.
+#[test]
+fn a_constant_torque_that_went_away_is_found() {
+    for (sign, change) in [(1.0, Change::Added), (-1.0, Change::Removed)] {
+        let diagnosis = with(&|motion, tau| {
+            baseline_friction(motion, tau);
+            if is_after(motion) == (sign > 0.0) {
+                tau[ELBOW] += 2.0;
+            }
+        });
+        let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else {
+            panic!("{:?}", sentences(&diagnosis))
+        };
+        assert_eq!((effect, joint, found), ("torque_offset", Some("elbow"), change));
+        let offset = finding.parameters["offset"].value;
+        assert!((offset / 2.0 - 1.0).abs() < 0.05, "{offset}");
+        let offsets = diagnosis
+            .effects
+            .iter()
+            .filter(|effect| effect.name() == "torque_offset");
+        let today: f64 = offsets.map(|effect| effect.number("offset")).sum();
+        let truth = if sign > 0.0 { 2.0 } else { 0.0 };
+        assert!((today - truth).abs() < 0.1, "{today} instead of {truth}");
+    }
+}
+
+/// If friction differs between recordings anyway, the recordings of today do not test what only the earlier ones have.
+#[test]
+fn friction_that_fell_is_found_although_it_varies() {
+    let diagnosis = with(&|motion, tau| {
+        let recording = (motion.clock / start(1)).floor() as usize;
+        let varied = [0.9, 1.08, 0.95, 1.05][recording.min(3)];
+        for joint in 0..3 {
+            let level = if joint == ELBOW && !is_after(motion) { 2.0 } else { 0.7 };
+            tau[joint] += varied * (level * motion.qd[joint].signum() + 0.4 * motion.qd[joint]);
+        }
+    });
+    let changes = changes(&diagnosis);
+    let is_it = |&&(_, effect, joint, change): &&(&Finding, &str, Option<&str>, Change)| {
+        (effect, joint, change) == ("coulomb_friction", Some("elbow"), Change::Reduced)
+    };
+    let found = changes
+        .iter()
+        .find(is_it)
+        .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
+    let size = found.0.parameters["level"].value;
+    assert!((size / 1.28 - 1.0).abs() < 0.2, "{size}");
+}
+
+/// A joint that stands still before cannot be compared.
+#[test]
+fn a_joint_that_moves_on_one_side_only_is_noted() {
+    let diagnosis = with(&|motion, tau| {
+        if !is_after(motion) {
+            let (q, qd, qdd) = (0.4, 0.0, 0.0);
+            (motion.q[ELBOW], motion.qd[ELBOW], motion.qdd[ELBOW]) = (q, qd, qdd);
+            let mut workspace = Workspace::new(&trio());
+            trio().inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
+        }
+        baseline_friction(motion, tau);
+    });
+    let expected = "(does not move in the recordings from before: elbow)";
+    let is_noted = diagnosis.remarks.iter().any(|remark| remark.ends_with(expected));
+    assert!(is_noted, "{:?}", diagnosis.remarks);
+}
+
 /// A spring that broke is in the recordings from before only, and the corrected model does not contain it.
 #[test]
 fn a_spring_that_broke_is_found() {

@@ -250,7 +250,8 @@ pub struct Spec {
     pub main: &'static [&'static str],
     /// Whether it may begin within the recordings.
     pub may_set_in: bool,
-    /// Whether it may have acted before a change only. It has one sign, so that no effect in addition to it cancels it.
+    /// Whether it may have acted before a change only: it has one sign, so that no effect in addition to it cancels it, or the background
+    /// holds it while it acts.
     pub may_end: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,

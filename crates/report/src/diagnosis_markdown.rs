@@ -74,7 +74,12 @@ fn place(joint: Option<&str>) -> String {
 
 fn recordings(report: &Report) -> String {
     let names = |list: &[String]| words::list(&list.iter().map(|name| code(name)).collect::<Vec<_>>());
-    let train = names(&report.recordings.train);
+    let all = &report.recordings;
+    let is_later = |name: &&String| !all.before.contains(name);
+    let mut train = names(&all.train.iter().filter(is_later).cloned().collect::<Vec<_>>());
+    if !all.before.is_empty() {
+        train += &format!(". Recordings from before: {}", names(&all.before));
+    }
     if report.recordings.held_out.is_empty() {
         return format!("Training recordings: {train}. No recording was held out, so that no finding is validated.");
     }

@@ -6,6 +6,7 @@ use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
 use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted};
 use effects::Effect;
+use effects::arm::Payload;
 use torque::summed;
 
 use crate::effect_file::EffectFile;
@@ -91,7 +92,16 @@ impl Request {
         if let Some(remark) = remark {
             listener.note(&format!("{}: {remark}", robot.path.display()));
         }
-        let only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
+        let mut only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
+        let has_before = !self.recordings.before.is_empty();
+        if has_before {
+            if let Some(note) = less_than_known(&known) {
+                listener.note(&note);
+            }
+            // The model of today does not say whether an effect is new.
+            let wanted = only.iter_mut().flatten();
+            wanted.for_each(|wanted| wanted.sets_in = None);
+        }
         listener.doing(Step::new(0.0, "reading"));
         let mut notes = Notes::default();
         let recordings = inputs::read(
@@ -124,6 +134,7 @@ impl Request {
             };
             let names = RecordingNames {
                 train: names(false),
+                before: Vec::new(),
                 held_out: names(true),
                 used_in_part: Vec::new(),
             };
@@ -215,6 +226,23 @@ fn with_one_map(mut doubts: Vec<Doubt>) -> Vec<Doubt> {
         }
     }
     doubts
+}
+
+/// A note on known effects of which a smaller size since the recordings from before is not found; `None` if there are none.
+fn less_than_known(known: &[Effect]) -> Option<String> {
+    let mut names: Vec<&str> = known
+        .iter()
+        .filter(|effect| effect.spec().may_end && !effect.is(&Payload))
+        .map(Effect::name)
+        .collect();
+    names.dedup();
+    (!names.is_empty()).then(|| {
+        format!(
+            "what is known and became less since the recordings from before is not found, except a payload: {}; leave it out of the known \
+             effects (--known, or --urdf-friction ignored) to look for that",
+            names.join(", ")
+        )
+    })
 }
 
 /// The effects that `only` asks for: `effect:joint,…`, or a file that a diagnosis wrote.

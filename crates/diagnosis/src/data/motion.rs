@@ -169,6 +169,11 @@ impl Motions {
         motions
     }
 
+    /// Whether a recording is from before the change.
+    pub fn is_before(&self, recording: usize) -> bool {
+        self.changed_at.is_some_and(|at| self.span(recording)[0] < at)
+    }
+
     fn tempo(&self) -> Vec<f64> {
         let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
         // After the second filter: between the two filters, the acceleration's noise is many times the motion's.

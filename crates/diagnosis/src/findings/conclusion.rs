@@ -137,6 +137,7 @@ impl Conclusion {
         let notes = [
             no_motion,
             links_not_named,
+            sentences::not_compared(data),
             torque_constants::note_on_unnamed(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
@@ -188,12 +189,14 @@ impl Conclusion {
             let selected = sources.filter(|source| source.held_out == held_out);
             selected.map(|source| source.name.clone()).collect()
         };
+        let before = (0..motions.sources.len()).filter(|&at| motions.is_before(at));
         let findings: Vec<Finding> = self.findings.into_iter().map(|(finding, _)| finding).collect();
         let report = Report {
             schema: SCHEMA,
             robot: arm.name().to_owned(),
             recordings: RecordingNames {
                 train: names(false),
+                before: before.map(|at| motions.sources[at].name.clone()).collect(),
                 held_out: names(true),
                 used_in_part: used_in_part(&motions.sources),
             },

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use effects::arm::InertialParameters;
 use effects::{Effect, Regressor};
 
+use crate::data::Data;
 use crate::report::{Change, Dependence, Finding, JointFit, Parameter};
+use crate::search::study::moved;
 use crate::selection::naming::may_be_nothing;
 use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS};
 
@@ -63,11 +65,8 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
     if let Some(recording) = &finding.place.recording {
         text += &format!(", in {recording}");
     }
-    if is_undetermined(finding) {
-        text.push_str(", of a size that these recordings do not determine");
-    }
     let form_differs = had_other_form(&finding.as_effect);
-    match (finding.change, finding.parameters.get("onset")) {
+    let mut text = match (finding.change, finding.parameters.get("onset")) {
         (Some(Change::Added), _) if form_differs => format!("{text}, of another form in the recordings from before"),
         (Some(Change::Added), _) => format!(
             "{text}, {}",
@@ -78,7 +77,11 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         (Some(Change::Reduced), _) => format!("{text} less than in the recordings from before"),
         (None, Some(onset)) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
         (None, None) => text,
+    };
+    if is_undetermined(finding) {
+        text.push_str(", of a size that these recordings do not determine");
     }
+    text
 }
 
 /// Whether the recordings do not determine the size of a finding: its interval contains the value without effect. The name may be
@@ -105,6 +108,35 @@ fn of_torque(ratio: f64) -> String {
     } else {
         format!("{:.0} % of the torque's standard deviation", 100.0 * ratio)
     }
+}
+
+/// A note on joints that move only in the recordings from before, or only in the others; `None` if there are none.
+pub fn not_compared(data: &Data) -> Option<String> {
+    let motions = &data.motions;
+    motions.changed_at?;
+    let moved = moved(motions, &data.scales);
+    let names = |is_before: bool| {
+        let only_there =
+            |list: &&Vec<usize>| !list.is_empty() && list.iter().all(|&at| motions.is_before(at) == is_before);
+        let joints = data.arm.joints().iter().zip(&moved);
+        let names: Vec<&str> = joints
+            .filter(|(_, list)| only_there(list))
+            .map(|(joint, _)| joint.name.as_str())
+            .collect();
+        names.join(", ")
+    };
+    let parts = [
+        ("moves only in the recordings from before", names(true)),
+        ("does not move in the recordings from before", names(false)),
+    ];
+    let parts = parts.into_iter().filter(|(_, names)| !names.is_empty());
+    let parts: Vec<String> = parts.map(|(which, names)| format!("{which}: {names}")).collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "changes of the friction and the drives of some joints are not testable ({})",
+            parts.join("; ")
+        )
+    })
 }
 
 /// The change since the recordings from before, as a noun phrase: the place and the effect.

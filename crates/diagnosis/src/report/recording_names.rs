@@ -6,8 +6,11 @@ use serde::Serialize;
 /// Paths as given on the command line.
 #[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 pub struct RecordingNames {
-    /// Training recordings, to which the effects are fitted.
+    /// Training recordings, to which the effects are fitted, with those from before.
     pub train: Vec<String>,
+    /// The training recordings that are from before something happened (`--before`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub before: Vec<String>,
     /// Held-out recordings, to which nothing is fitted.
     pub held_out: Vec<String>,
     /// Long recordings of which windows are used; absent if all recordings are used whole.

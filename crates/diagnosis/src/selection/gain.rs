@@ -1,5 +1,6 @@
 //! How much an effect reduces the error on recordings, or pieces of them, that it was not fitted to.
 
+use effects::Acts;
 use rayon::prelude::*;
 
 use crate::regression::fit::{Fit, Products};
@@ -44,7 +45,19 @@ pub fn held_out_gain(problem: &Problem<'_>, held: Option<&Products>, judged: &Ju
     let held = held?;
     if is_idle(problem, &judged.named, member.candidate) {
         let fit = &judged.named.fit;
-        return Some(gain_in_pieces(problem, fit, &without.fit, member.candidate, joint));
+        let gain = |without: &Fit| gain_in_pieces(problem, fit, without, member.candidate, joint);
+        let refitted = gain(&without.fit);
+        // In a refit, each recording may have a friction of its own, which is no name for friction that fell since those from before.
+        let is_past = matches!(problem.acts(candidate), Acts::Until(_));
+        return Some(if is_past && candidate.hypothesis.spec().is_friction {
+            let mut bare = fit.clone();
+            let own = bare.columns.iter().zip(&mut bare.coefficients);
+            own.filter(|(column, _)| candidate.columns.contains(column))
+                .for_each(|(_, value)| *value = 0.0);
+            refitted.max(gain(&bare))
+        } else {
+            refitted
+        });
     }
     let fit = &judged.named.fit;
     let [with, without] = [fit, &without.fit].map(|fit| problem.held_out_rss(held, member.candidate, fit));

@@ -19,6 +19,7 @@ static SPEC: Spec = Spec {
     sentence: "a reflected rotor inertia of {inertia}",
     parameters: &[Parameter::new("inertia", Quantity::Inertia).within(Range::NotNegative)],
     main: &["inertia"],
+    may_end: true,
     prior: 4.0,
     is_baseline: true,
     is_baseline_or_constant: true,

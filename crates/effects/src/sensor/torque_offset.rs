@@ -25,6 +25,7 @@ static SPEC: Spec = Spec {
     sentence: "a constant torque of {offset}",
     parameters: &[Parameter::new("offset", Quantity::Torque)],
     main: &["offset"],
+    may_end: true,
     may_set_in: true,
     excludes: &["friction_asymmetry", "spring"],
     prior: 10.0,

@@ -211,14 +211,14 @@ impl Page<'_> {
                     (zoomable(Some(&cloud.data), html! { div.pair {
                         figure { div.plot { (PreEscaped(&cloud.before)) } figcaption {
                             (key("k-before", if self.figures.shares_joint(index, joint) {
-                                "before: residual with all other effects found"
+                                "without it: residual with all other effects found"
                             } else {
-                                "before: measured − nominal model"
+                                "nominal: measured − nominal model"
                             }))
                             (key("k-effect", "the effect"))
                         } }
                         figure { div.plot { (PreEscaped(&cloud.after)) } figcaption {
-                            (key("k-after", "after: residual with all effects found"))
+                            (key("k-after", "corrected: residual with all effects found"))
                             @if finding.joint.is_none() { "(" (name(&self.figures.arm.joints()[joint].name)) ")" }
                         } }
                     } }))

@@ -131,7 +131,14 @@ impl Page<'_> {
     /// The recordings and the program.
     pub(super) fn provenance(&self) -> Section {
         let names = &self.report.recordings;
-        let all = names.train.iter().map(|name| (name, "training"));
+        let used = |name: &String| {
+            if names.before.contains(name) {
+                "training, before"
+            } else {
+                "training"
+            }
+        };
+        let all = names.train.iter().map(|name| (name, used(name)));
         let all = all.chain(names.held_out.iter().map(|name| (name, "held out")));
         let find = |name: &str| self.figures.traces.recordings.iter().find(|trace| trace.name == name);
         let rows = all

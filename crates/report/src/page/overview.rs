@@ -160,8 +160,8 @@ impl Page<'_> {
     /// The legend of a residual's colours.
     pub(super) fn residual_key(&self, has_windows: bool) -> Markup {
         html! {
-            (key("k-before", "before: measured − nominal model"))
-            (key("k-after", "after: measured − nominal model − effects found"))
+            (key("k-before", "nominal: measured − nominal model"))
+            (key("k-after", "corrected: measured − nominal model − effects found"))
             (key("box k-rest", "at rest, not fitted"))
             @if has_windows { (key("box k-window", "largest residual")) }
         }

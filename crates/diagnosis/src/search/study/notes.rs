@@ -10,6 +10,7 @@ impl Study {
     fn described(&self, candidate: usize) -> (String, Option<String>) {
         let acts = match Acts::of(&self.terms(candidate)) {
             Acts::Always => "",
+            Acts::Since(at) if Some(at) == self.data.motions.changed_at => " since the change",
             Acts::Since(_) => " since an onset",
             Acts::Until(_) => " until the change",
         };

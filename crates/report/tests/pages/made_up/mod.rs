@@ -126,6 +126,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         schema: "testbed.diagnosis/1",
         robot: arm.name().into(),
         recordings: RecordingNames {
+            before: Vec::new(),
             train: traces.recordings[..2].iter().map(|trace| trace.name.clone()).collect(),
             held_out: vec![traces.recordings[2].name.clone()],
             used_in_part: Vec::new(),
