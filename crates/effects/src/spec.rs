@@ -251,7 +251,7 @@ pub struct Spec {
     /// Whether it may begin within the recordings.
     pub may_set_in: bool,
     /// Whether it may have acted before a change only: it has one sign, so that no effect in addition to it cancels it, or the background
-    /// holds it while it acts.
+    /// holds it while it acts. Not for a friction that generalises a simpler one, whose level remains.
     pub may_end: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,

@@ -26,7 +26,6 @@ static SPEC: Spec = Spec {
         Parameter::new("negative", Quantity::Torque),
     ],
     main: &["positive"],
-    may_end: true,
     generalises: Some("coulomb_friction"),
     excludes: &["torque_offset", "spring"],
     // Every drive has a small asymmetry. In simulated cases with small effects on every joint (below 1.5 % of its torque),

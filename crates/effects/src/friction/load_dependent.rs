@@ -25,7 +25,6 @@ static SPEC: Spec = Spec {
             .remarked("N m per N m of load"),
     ],
     main: &["gain"],
-    may_end: true,
     generalises: Some("coulomb_friction"),
     // Every gear has some load dependence. In simulated cases with small effects on every joint (below 1.5 % of its torque), it
     // explains up to 1 % beyond Coulomb friction; injected load dependence explains 6.6 % and more.

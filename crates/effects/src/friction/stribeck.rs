@@ -32,7 +32,6 @@ static SPEC: Spec = Spec {
             .remarked(""),
     ],
     main: &["breakaway"],
-    may_end: true,
     generalises: Some("coulomb_friction"),
     against: Against::Speed,
     ..Spec::EMPTY
