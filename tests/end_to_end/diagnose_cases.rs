@@ -5,13 +5,16 @@ use serde_json::Value;
 use crate::diagnose_blind::compare;
 use crate::support::{Sandbox, root};
 
+/// The path of a file of the cases.
+fn path(name: &str) -> String {
+    root().join("tests/cases").join(name).to_string_lossy().into_owned()
+}
+
 /// Diagnoses a case, and checks it against its truth; the diagnosis.
 fn check(case: &str) -> Value {
-    let folder = root().join("tests/cases");
-    let path = |name: String| folder.join(name).to_string_lossy().into_owned();
-    let robot = path("arm.urdf".to_owned());
+    let robot = path("arm.urdf");
     let [train, held_out, truth] =
-        ["train_1.csv", "held_out.csv", "truth.json"].map(|name| path(format!("{case}/{name}")));
+        ["train_1.csv", "held_out.csv", "truth.json"].map(|name| path(&format!("{case}/{name}")));
     let sandbox = Sandbox::new();
     let inputs = [
         "diagnose",
@@ -100,8 +103,6 @@ fn what_is_outside_the_catalogue_gets_no_name() {
 /// Recordings of two cases with different loads: the answer begins with it, and names the folders that distinguish the files.
 #[test]
 fn recordings_with_another_load_come_first() {
-    let folder = root().join("tests/cases");
-    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
     let [robot, loaded, train, held_out] = [
         "arm.urdf",
         "spring_and_payload/train_1.csv",
@@ -135,7 +136,6 @@ fn recordings_with_another_load_come_first() {
 /// explains the recordings of today: it has what is new, without an onset, and not what is gone.
 #[test]
 fn the_corrected_model_is_that_of_today() {
-    let path = |name: &str| root().join("tests/cases").join(name).to_string_lossy().into_owned();
     let robot = path("arm.urdf");
     for (before, today, phrase, change, has_payload) in [
         (

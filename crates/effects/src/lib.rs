@@ -111,6 +111,7 @@ pub mod arm {
     mod inertial_scale;
     mod link_error;
     mod payload;
+    mod tensor;
     mod tilt;
 
     pub use contact::{ExternalContact, columns as contact_columns, window as contact_window};
@@ -118,6 +119,7 @@ pub mod arm {
     pub use inertial_scale::InertialScale;
     pub use link_error::LinkInertialError;
     pub use payload::{PARAMETER as PAYLOAD_PARAMETER, Payload, body, exists};
+    pub use tensor::{entries, second_moments, tensor};
     pub use tilt::GravityMisalignment;
 }
 

@@ -146,9 +146,9 @@ pub enum Acts {
 
 impl Acts {
     /// When an effect with these terms acts: as the first one that does not always act.
-    pub fn of(terms: &[Term]) -> Self {
-        let changing = terms.iter().find(|term| !term.is_always());
-        changing.map_or(Self::Always, |term| term.acts)
+    pub fn of<'a>(terms: impl IntoIterator<Item = &'a Term>) -> Self {
+        let mut all = terms.into_iter().map(|term| term.acts);
+        all.find(|acts| *acts != Self::Always).unwrap_or(Self::Always)
     }
 
     /// Whether both always act, both begin, or both end; the times may differ.
@@ -253,11 +253,6 @@ impl Term {
             Acts::Since(from) => Some(from),
             Acts::Always | Acts::Until(_) => None,
         }
-    }
-
-    /// The time at which it begins or ends (s); `None` if it always acts.
-    pub fn changes_at(&self) -> Option<f64> {
-        self.acts.time()
     }
 
     /// Whether it is of this law and always acts.

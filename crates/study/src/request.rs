@@ -1,5 +1,6 @@
 //! The request for a diagnosis, and its execution up to the complete report.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
@@ -126,16 +127,14 @@ impl Request {
             warnings.append(&mut doubts);
         }
         if !doubts.is_empty() {
-            let names = |held_out: bool| {
-                let chosen = recordings
-                    .iter()
-                    .filter(|recording| (recording.role == Role::HeldOut) == held_out);
+            let names = |are: &[Role]| {
+                let chosen = recordings.iter().filter(|recording| are.contains(&recording.role));
                 chosen.map(|recording| recording.name.clone()).collect()
             };
             let names = RecordingNames {
-                train: names(false),
-                before: Vec::new(),
-                held_out: names(true),
+                train: names(&[Role::Before, Role::Train]),
+                before: names(&[Role::Before]),
+                held_out: names(&[Role::HeldOut]),
                 used_in_part: Vec::new(),
             };
             return Ok(Diagnosed {
@@ -230,13 +229,12 @@ fn with_one_map(mut doubts: Vec<Doubt>) -> Vec<Doubt> {
 
 /// A note on known effects of which a smaller size since the recordings from before is not found; `None` if there are none.
 fn less_than_known(known: &[Effect]) -> Option<String> {
-    let mut names: Vec<&str> = known
+    let may_be_less = known
         .iter()
-        .filter(|effect| effect.spec().may_end && !effect.is(&Payload))
-        .map(Effect::name)
-        .collect();
-    names.dedup();
+        .filter(|effect| effect.spec().may_end && !effect.is(&Payload));
+    let names: BTreeSet<&str> = may_be_less.map(Effect::name).collect();
     (!names.is_empty()).then(|| {
+        let names: Vec<&str> = names.into_iter().collect();
         format!(
             "what is known and became less since the recordings from before is not found, except a payload: {}; leave it out of the known \
              effects (--known, or --urdf-friction ignored) to look for that",

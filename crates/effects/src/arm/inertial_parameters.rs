@@ -1,7 +1,8 @@
 //! Links whose mass, centre of mass and moments of inertia differ from the URDF's.
 
-use ::arm::{Inertia, Matrix3};
+use ::arm::Inertia;
 
+use super::tensor::{entries, second_moments, tensor};
 use crate::{Effect, EffectKind, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Shape, Spec};
 
 /// The link that the joint carries has these inertial parameters.
@@ -46,19 +47,17 @@ const ROUNDING: f64 = 1e-6;
 impl InertialParameters {
     /// The effect that gives the link behind `joint` this body, in the link's frame.
     pub fn effect(joint: impl Into<String>, body: &Inertia) -> Effect {
-        let tensor = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| body.tensor[at]);
         let com = [body.com.x, body.com.y, body.com.z];
         let effect = Effect::of(&Self).on(joint).with("mass", body.mass);
-        effect.with("com", com).with("inertia", tensor)
+        effect.with("com", com).with("inertia", entries(&body.tensor))
     }
 
     /// The body that an effect gives its link.
     pub fn body(effect: &Effect) -> Inertia {
-        let [xx, xy, yy, xz, yz, zz] = effect.list("inertia");
         Inertia {
             mass: effect.number("mass"),
             com: effect.vector("com"),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            tensor: tensor(effect.list("inertia")),
         }
     }
 }
@@ -74,10 +73,7 @@ impl EffectKind for InertialParameters {
     }
 
     fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        // The pseudo-inertia's block about the centre of mass, ½ tr(I) 1 − I, holds the body's second moments.
-        let tensor = Self::body(effect).tensor;
-        let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
-        let moments = second.symmetric_eigenvalues();
+        let moments = second_moments(&Self::body(effect).tensor).symmetric_eigenvalues();
         let wrong = moments.min() < -ROUNDING * moments.amax();
         wrong.then_some((
             "inertia's smallest second moment of mass",
@@ -101,13 +97,13 @@ mod tests {
         let body = Inertia {
             mass: 2.0,
             com: ::arm::Vector3::new(0.1, 0.0, -0.2),
-            tensor: Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.04)),
+            tensor: ::arm::Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.04)),
         };
         let effect = InertialParameters::effect("a", &body);
         assert_eq!(InertialParameters::body(&effect), body);
         assert!(InertialParameters.refuse(&effect).is_none());
         let thin = Inertia {
-            tensor: Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.09)),
+            tensor: ::arm::Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.09)),
             ..body
         };
         let effect = InertialParameters::effect("a", &thin);

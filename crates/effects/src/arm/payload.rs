@@ -2,6 +2,7 @@
 
 use ::arm::{Arm, Inertia, Matrix3, Vector3};
 
+use super::tensor::{entries, second_moments, tensor};
 use crate::fitted::moving_mass;
 use crate::{
     Acts, Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine,
@@ -99,7 +100,7 @@ const ROUNDING: f64 = 1e-6;
 pub fn body(parameters: &[f64; 10]) -> Inertia {
     let [mass, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *parameters;
     let com = Vector3::new(hx, hy, hz) / mass;
-    let about_origin = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let about_origin = tensor([xx, xy, yy, xz, yz, zz]);
     Inertia {
         mass,
         com,
@@ -107,22 +108,9 @@ pub fn body(parameters: &[f64; 10]) -> Inertia {
     }
 }
 
-/// The tensor about the centre of mass that the six numbers of a payload (Ixx Ixy Iyy Ixz Iyz Izz) define.
-fn tensor([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Matrix3<f64> {
-    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-}
-
-/// The six numbers of a tensor, in the order of [`tensor`].
-fn entries(tensor: &Matrix3<f64>) -> [f64; 6] {
-    [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| tensor[at])
-}
-
-/// Whether a body may have this tensor: its second moments Σ = ½ tr(I) 1 − I are not negative. A missing body has a negative mass and the
-/// negative of a tensor.
+/// Whether a body may have this tensor. A missing body has a negative mass and the negative of a tensor.
 pub fn exists(mass: f64, tensor: &Matrix3<f64>) -> bool {
-    let of_body = tensor * mass.signum();
-    let second_moments = Matrix3::identity() * (0.5 * of_body.trace()) - of_body;
-    second_moments.symmetric_eigenvalues().min() >= 0.0
+    second_moments(&(tensor * mass.signum())).symmetric_eigenvalues().min() >= 0.0
 }
 
 impl Payload {

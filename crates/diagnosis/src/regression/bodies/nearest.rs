@@ -3,6 +3,7 @@
 use argmin::core::{CostFunction, Error, Executor, Gradient, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
+use effects::arm::{entries, second_moments, tensor};
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// The largest number of steps.
@@ -24,11 +25,11 @@ pub fn nearest_tensor(wanted: &Matrix3<f64>, precision: &Matrix6<f64>) -> Option
     }
     // Of order one.
     let problem = Problem {
-        wanted: entries(&(wanted / size)),
+        wanted: six(&(wanted / size)),
         precision: precision / mean + Matrix6::identity() * RIDGE,
     };
     let wanted = wanted / size;
-    let mut eigen = SymmetricEigen::new(Matrix3::identity() * (0.5 * wanted.trace()) - wanted);
+    let mut eigen = SymmetricEigen::new(second_moments(&wanted));
     eigen.eigenvalues.apply(|value| *value = value.max(FIRST));
     let first = eigen.recompose().cholesky()?.l();
     let line_search = MoreThuenteLineSearch::new();
@@ -40,21 +41,16 @@ pub fn nearest_tensor(wanted: &Matrix3<f64>, precision: &Matrix6<f64>) -> Option
     let executor = Executor::new(problem, solver).configure(|state| state.param(start).max_iters(STEPS));
     let found = executor.run().ok()?;
     let best = found.state().get_best_param()?;
-    Some(tensor(&Problem::second_moments(best)) * size)
+    Some(of_moments(&Problem::moments(best)) * size)
 }
 
-/// A symmetric matrix from its six different entries.
-fn matrix(v: &Vector6<f64>) -> Matrix3<f64> {
-    Matrix3::new(v[0], v[1], v[3], v[1], v[2], v[4], v[3], v[4], v[5])
+/// The six different entries of a tensor.
+fn six(tensor: &Matrix3<f64>) -> Vector6<f64> {
+    Vector6::from(entries(tensor))
 }
 
-/// Its six different entries.
-fn entries(matrix: &Matrix3<f64>) -> Vector6<f64> {
-    Vector6::from([(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|at| matrix[at]))
-}
-
-/// The tensor of second moments.
-fn tensor(second: &Matrix3<f64>) -> Matrix3<f64> {
+/// The tensor of a body with these second moments.
+fn of_moments(second: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * second.trace() - second
 }
 
@@ -75,13 +71,13 @@ impl Problem {
         lower
     }
 
-    fn second_moments(entries: &[f64]) -> Matrix3<f64> {
+    fn moments(entries: &[f64]) -> Matrix3<f64> {
         let lower = Self::lower(entries);
         lower * lower.transpose()
     }
 
     fn off(&self, entries: &[f64]) -> Vector6<f64> {
-        self::entries(&tensor(&Self::second_moments(entries))) - self.wanted
+        six(&of_moments(&Self::moments(entries))) - self.wanted
     }
 }
 
@@ -101,7 +97,7 @@ impl Gradient for Problem {
 
     fn gradient(&self, entries: &Vec<f64>) -> Result<Vec<f64>, Error> {
         // The derivative by the six entries of I, and from it that by Σ and by L.
-        let by_tensor = matrix(&(self.precision * self.off(entries)));
+        let by_tensor = tensor((self.precision * self.off(entries)).into());
         let halved = Matrix3::from_fn(|i, k| {
             if i == k {
                 by_tensor[(i, k)]
@@ -122,13 +118,12 @@ mod tests {
     use super::*;
 
     fn smallest_second_moment(tensor: &Matrix3<f64>) -> f64 {
-        let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
-        second.symmetric_eigenvalues().min()
+        second_moments(tensor).symmetric_eigenvalues().min()
     }
 
     #[test]
     fn a_body_that_exists_is_nearest_to_itself() {
-        let wanted = matrix(&Vector6::new(2e-3, 1e-4, 3e-3, -2e-4, 1e-4, 2.5e-3));
+        let wanted = tensor([2e-3, 1e-4, 3e-3, -2e-4, 1e-4, 2.5e-3]);
         let nearest = nearest_tensor(&wanted, &(Matrix6::identity() * 4.0)).expect("it is found");
         assert!((nearest - wanted).amax() < 1e-8, "{nearest}");
     }
@@ -137,7 +132,7 @@ mod tests {
     /// origin, become negative about the centre of mass.
     #[test]
     fn a_determined_moment_is_kept_and_the_others_become_possible() {
-        let wanted = matrix(&Vector6::new(-4e-3, 1e-3, -3e-3, 0.0, 0.0, 5e-3));
+        let wanted = tensor([-4e-3, 1e-3, -3e-3, 0.0, 0.0, 5e-3]);
         let mut precision = Matrix6::zeros();
         precision[(5, 5)] = 1e6;
         let nearest = nearest_tensor(&wanted, &precision).expect("it is found");

@@ -35,7 +35,6 @@ impl Problem<'_> {
 
     /// When a candidate acts.
     pub fn acts(&self, candidate: &Candidate) -> Acts {
-        let mut terms = candidate.columns.iter().map(|&column| self.table.terms[column].acts);
-        terms.find(|acts| *acts != Acts::Always).unwrap_or(Acts::Always)
+        Acts::of(candidate.columns.iter().map(|&column| &self.table.terms[column]))
     }
 }

@@ -35,7 +35,7 @@ impl About {
     pub fn stages(data: &Data, table: &Table, fit: &Fit, load: &Matrix3<f64>) -> Vec<(f64, Self)> {
         let carried = |&column: &usize| table.terms[column].law.carry.is_some();
         let columns = fit.columns.iter().filter(|column| carried(column));
-        let mut times: Vec<f64> = columns.filter_map(|&column| table.terms[column].changes_at()).collect();
+        let mut times: Vec<f64> = columns.filter_map(|&column| table.terms[column].acts.time()).collect();
         times.push(f64::NEG_INFINITY);
         times.sort_by(f64::total_cmp);
         times.dedup();
