@@ -69,7 +69,8 @@ pub struct Report {
     /// How well each joint's torque is predicted. Joints whose channel holds no torque, or none in the held-out
     /// recordings, are not in it.
     pub fit: BTreeMap<String, JointFit>,
-    /// What changed since the recordings from before, in sentences, if there are such recordings.
+    /// What changed since the recordings from before, if there are such recordings: places and effects as noun phrases. The same change
+    /// on several joints is one phrase.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub changed: Option<Vec<String>>,
     /// The load at the tip that only some of the recordings have, if there is one. No model of one arm holds for all of them.

@@ -120,11 +120,14 @@ impl Conclusion {
                 .then(a.joint.cmp(&b.joint))
         });
         let changed = data.motions.changed_at.map(|_| {
-            let new = findings.iter().filter(|(finding, _)| finding.change.is_some());
-            new.map(|(finding, _)| sentences::changed(finding)).collect()
+            let new = findings.iter().map(|(finding, _)| finding);
+            sentences::changes(new.filter(|finding| finding.change.is_some()))
         });
-        // If the change is named, nothing is to be added.
-        let is_named = |(finding, _): &(Finding, _)| finding.change.is_some() && finding.as_effect.spec().is_wrong_mass;
+        // If a change is named that a load at rest resembles, nothing is to be added.
+        let is_named = |(finding, _): &(Finding, _)| {
+            let spec = finding.as_effect.spec();
+            finding.change.is_some() && (spec.is_wrong_mass || spec.may_be_inertial)
+        };
         let own_load = study.own_load.as_ref();
         let different_load = own_load
             .filter(|_| !findings.iter().any(is_named))

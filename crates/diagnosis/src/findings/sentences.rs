@@ -139,10 +139,30 @@ pub fn not_compared(data: &Data) -> Option<String> {
     })
 }
 
-/// The change since the recordings from before, as a noun phrase: the place and the effect.
-pub fn changed(finding: &Finding) -> String {
-    let place = finding.joint.as_deref().unwrap_or("the whole arm");
-    format!("{place}: {}", described(finding, &plain))
+/// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
+/// phrase, with all of its places.
+pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>) -> Vec<String> {
+    let mut list: Vec<(String, Vec<&str>)> = Vec::new();
+    for finding in findings {
+        let (what, place) = (
+            described(finding, &plain),
+            finding.joint.as_deref().unwrap_or("the whole arm"),
+        );
+        match list.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, places)) => places.push(place),
+            None => list.push((what, vec![place])),
+        }
+    }
+    let phrase = |(what, places): (String, Vec<&str>)| format!("{}: {what}", enumerated(&places));
+    list.into_iter().map(phrase).collect()
+}
+
+/// Several words as "a, b and c".
+fn enumerated(words: &[&str]) -> String {
+    match words {
+        [others @ .., last] if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => words.concat(),
+    }
 }
 
 /// A value with its unit.
@@ -248,5 +268,46 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
         Some(Regressor::OwnSpeed | Regressor::OtherJoint) | None => {
             format!("move {joint} alone at three constant speeds, in both directions, twice")
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use effects::sensor::TorqueScale;
+
+    use super::*;
+
+    #[test]
+    fn the_same_change_on_several_joints_is_told_once() {
+        let changed = |joint: &str, factor: f64| {
+            let effect = Effect::of(&TorqueScale).on(joint).with("factor", factor);
+            let parameter = Parameter {
+                value: factor,
+                ci95: [factor - 0.02, factor + 0.02],
+                unit: "1",
+            };
+            Finding {
+                change: Some(Change::Added),
+                joint: Some(joint.to_owned()),
+                parameters: [("factor", parameter)].into(),
+                ..Finding::of(effect)
+            }
+        };
+        let findings = [
+            changed("a", 1.1),
+            changed("b", 1.3),
+            changed("c", 1.1),
+            changed("d", 1.1),
+        ];
+        let phrases = changes(findings.iter());
+        assert_eq!(phrases.len(), 2, "{phrases:?}");
+        assert!(
+            phrases[0].starts_with("a, c and d: a measured torque of 1.10 times"),
+            "{phrases:?}"
+        );
+        assert!(
+            phrases[1].starts_with("b: a measured torque of 1.30 times"),
+            "{phrases:?}"
+        );
     }
 }

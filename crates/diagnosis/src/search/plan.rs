@@ -92,6 +92,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         selected = refine(study, selected, false);
         selected = connection::in_place_of_delays(study, selected);
     }
+    let selected = study.with_constants_that_changed(selected);
     let selected = study.without_imitations(selected);
     let selected = study.with_payload_for_last_link(selected);
     study.without_payload_of_a_link(selected)

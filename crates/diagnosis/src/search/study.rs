@@ -26,6 +26,7 @@ use crate::trace::Trace;
 
 mod about;
 mod anew;
+mod constants;
 mod formed;
 mod notes;
 mod payloads;

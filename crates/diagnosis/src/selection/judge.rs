@@ -1,5 +1,6 @@
 //! Decides which of the selected candidates are named.
 
+use effects::Acts;
 use effects::arm::ExternalContact;
 use rayon::prelude::*;
 
@@ -236,13 +237,24 @@ fn shares(problem: &Problem<'_>, selected: &Selection, candidate: usize) -> Vec<
         .collect()
 }
 
-/// Whether a candidate has no torque in the held-out recordings, so that they do not test it.
+/// Whether a candidate has no torque in the held-out recordings, so that they do not test it: neither alone, nor together with the
+/// change that ended it.
 pub fn is_idle(problem: &Problem<'_>, selected: &Selection, candidate: usize) -> bool {
-    let columns = &problem.candidates[candidate].columns;
-    let values = selected.fit.values(columns);
+    let this = &problem.candidates[candidate];
+    let always = problem.acts(this) == Acts::Always;
+    let others = selected.set.iter().map(|&c| &problem.candidates[c]);
+    let changes = others.filter(|other| {
+        always
+            && problem.acts(other) != Acts::Always
+            && other.joint == this.joint
+            && other.hypothesis == this.hypothesis
+    });
+    let mut columns = this.columns.clone();
+    columns.extend(changes.flat_map(|change| &change.columns));
+    let values = selected.fit.values(&columns);
     let rows = problem.table.rows_of(|recording| !problem.data.fitted[recording]);
     (0..problem.data.motions.dof).all(|joint| {
-        let torque = problem.table.torque(joint, columns, &values);
+        let torque = problem.table.torque(joint, &columns, &values);
         let moving = &problem.table.joints[joint].moving;
         let on_rows = rows.iter().filter(|&&row| moving[row]).map(|&row| torque[row]);
         rms(on_rows).unwrap_or(0.0) < IDLE_EFFECT * problem.data.scales.torque[joint]

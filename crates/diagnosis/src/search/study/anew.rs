@@ -126,7 +126,7 @@ impl Study {
         selected
     }
 
-    fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
+    pub(super) fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
         self.set_bodies(fit);
         let stages = About::stages(&self.data, &self.table, fit, &self.load_tensor);
         let last = &stages[stages.len() - 1].1;
