@@ -3,6 +3,8 @@
 //! No model is right about the fast torque after an impact in a gear, or at the end of a spring. It hides the slower part of the same
 //! torque, which a model does explain, and which stands out with a slower filter.
 
+use std::collections::BTreeMap;
+
 use arm::Arm;
 
 use crate::data::Data;
@@ -15,7 +17,8 @@ use crate::search::scope::Scope;
 use crate::search::study::Study;
 use crate::selection::FinalFit;
 use crate::thresholds::{
-    CERTAIN_ENOUGH, LEAST_CUTOFF_PERIODS, LEAST_FOR_DYNAMICS, OF_THE_UNEXPLAINED, SLOWER_FILTER, WORTH_SLOWING,
+    CERTAIN_ENOUGH, FALLS_TO, LEAST_CUTOFF_PERIODS, LEAST_FOR_DYNAMICS, OF_THE_UNEXPLAINED, SLOWER_FILTER,
+    WORTH_SLOWING,
 };
 use crate::trace::{Action, Trace};
 
@@ -147,6 +150,12 @@ impl Look {
         Outcome {
             findings: self.conclusion.findings.iter().map(|(finding, _)| finding).collect(),
             unexplained: &self.conclusion.unexplained,
+            errors: self
+                .conclusion
+                .fit
+                .iter()
+                .map(|(joint, fit)| (joint.as_str(), fit.error()))
+                .collect(),
         }
     }
 }
@@ -155,6 +164,8 @@ impl Look {
 struct Outcome<'a> {
     findings: Vec<&'a Finding>,
     unexplained: &'a [Unexplained],
+    /// Each joint's error (NRMSE).
+    errors: BTreeMap<&'a str, f64>,
 }
 
 impl Outcome<'_> {
@@ -165,7 +176,7 @@ impl Outcome<'_> {
     /// The new name that is the reason for residuals that `first` leaves unexplained and this look does not, as a clause; `None` if there
     /// is none, or if this look explains less elsewhere.
     ///
-    /// The name must be certain, and as large as a part of the largest of these residuals. No other joint may be unexplained, and the
+    /// The name must be certain, and as large as a part of the largest of these residuals. The errors of their joints must fall. No other joint may be unexplained, and the
     /// certain names of `first` on joints that it explains must stay.
     fn reason_beside(&self, first: &Self) -> Option<String> {
         let closed = || first.unexplained.iter().filter(|open| !self.is_open(&open.joint));
@@ -183,7 +194,14 @@ impl Outcome<'_> {
             .filter(|finding| is_certain(finding))
             .filter(is_elsewhere);
         let others_are_open = self.unexplained.iter().any(|open| !first.is_open(&open.joint));
-        if others_are_open || !kept.all(|finding| self.names(finding)) {
+        // Elsewhere, the filter may have hidden the structure of the same error.
+        let falls = |open: &Unexplained| {
+            let error = |outcome: &Self| outcome.errors.get(open.joint.as_str()).copied();
+            error(self)
+                .zip(error(first))
+                .is_none_or(|(error, before)| error <= FALLS_TO * before)
+        };
+        if others_are_open || !closed().all(falls) || !kept.all(|finding| self.names(finding)) {
             return None;
         }
         let joints: Vec<&str> = closed().map(|open| open.joint.as_str()).collect();
@@ -243,15 +261,29 @@ mod tests {
     }
 
     fn is_taken_after(first: &[Finding], findings: &[Finding], unexplained: &[Unexplained]) -> bool {
+        is_taken_at(0.1, first, findings, unexplained)
+    }
+
+    /// Whether a look is taken in which the error of the elbow falls from 0.4 to `error`.
+    fn is_taken_at(error: f64, first: &[Finding], findings: &[Finding], unexplained: &[Unexplained]) -> bool {
         let first = Outcome {
             findings: first.iter().collect(),
             unexplained: &[open("elbow"), open("wrist")],
+            errors: [("elbow", 0.4)].into(),
         };
         let second = Outcome {
             findings: findings.iter().collect(),
             unexplained,
+            errors: [("elbow", error)].into(),
         };
         second.reason_beside(&first).is_some()
+    }
+
+    #[test]
+    fn a_second_look_must_reduce_the_errors() {
+        let gap = [named(&Backlash, 0.985, 0.2)];
+        assert!(is_taken_at(0.2, &[], &gap, &[open("wrist")]));
+        assert!(!is_taken_at(0.39, &[], &gap, &[open("wrist")]), "only hidden");
     }
 
     #[test]
@@ -305,7 +337,11 @@ mod tests {
     #[test]
     fn the_note_says_what_explains_which_residuals() {
         let (gap, open) = (named(&Backlash, 0.985, 0.2), [open("elbow"), open("wrist")]);
-        let of = |findings, unexplained| Outcome { findings, unexplained };
+        let of = |findings, unexplained| Outcome {
+            findings,
+            unexplained,
+            errors: BTreeMap::new(),
+        };
         let reason = of(vec![&gap], &open[1..]).reason_beside(&of(Vec::new(), &open));
         assert_eq!(reason.as_deref(), Some("backlash of elbow explains residuals of elbow"));
     }

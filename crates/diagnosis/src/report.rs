@@ -80,7 +80,8 @@ pub struct Report {
     /// URDF's.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub inertials: BTreeMap<String, LinkInertials>,
-    /// The constant torques that correct the joints and that no finding names: small offsets of the torque sensors of most joints.
+    /// The constant torques that correct the joints and that no finding names: small offsets of the torque sensors of most joints, and
+    /// constants that may be a part of what is unexplained on their joint.
     /// Empty if the recordings need none.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub constant_torques: BTreeMap<String, Parameter>,
@@ -328,6 +329,13 @@ pub struct JointFit {
     pub residual_autocorrelation: f64,
     /// Autocorrelation of the nominal residual at a lag of 0.1 s.
     pub residual_autocorrelation_nominal: f64,
+}
+
+impl JointFit {
+    /// The error (NRMSE) with the named effects: the held-out one if there is one.
+    pub fn error(&self) -> f64 {
+        self.held_out_nrmse_augmented.unwrap_or(self.train_nrmse_augmented)
+    }
 }
 
 /// The estimate of a link's inertial parameters.

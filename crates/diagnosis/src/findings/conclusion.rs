@@ -42,7 +42,8 @@ pub struct Conclusion {
     located: Vec<Located>,
     /// The reasons why the data are not sufficient for a diagnosis; empty if they are.
     pub not_enough_data: Vec<String>,
-    fit: BTreeMap<String, JointFit>,
+    /// How well each joint's torque is predicted.
+    pub fit: BTreeMap<String, JointFit>,
     /// Structured residuals that no effect in the catalogue explains.
     pub unexplained: Vec<Unexplained>,
     /// Effects that are not testable with these recordings.

@@ -34,7 +34,8 @@ pub fn constant_torques(constants: &BTreeMap<String, Parameter>) -> Option<Strin
         .map(|(joint, offset)| format!("{joint} {} {}", number(offset.value), offset.unit))
         .collect();
     Some(format!(
-        "the corrected model adds constant torques that no finding names, because most joints have one: {}. Their torque sensors may \
+        "the corrected model adds constant torques that no finding names, because most joints have a small one, or because they \
+         may be a part of an unexplained residual: {}. Their torque sensors may \
          have offsets, or the joints more friction in one direction. Record the arm at rest in several postures to \
          distinguish the two",
         list.join(", ")

@@ -45,7 +45,7 @@ pub fn unexplained(
     // Forms that compensate each other are larger together than what they explain.
     for (&joint, (share, _)) in &mut by_joint {
         if let Some(fit) = fit.get(&study.data.arm.joints()[joint].name) {
-            *share = share.min(error(fit).max(fit.train_nrmse_augmented));
+            *share = share.min(fit.error().max(fit.train_nrmse_augmented));
         }
     }
     let mut in_transients = transients.unexplained.clone();
@@ -90,7 +90,7 @@ pub fn poorly_predicted(
     let study = &last.study;
     for (joint, name) in study.data.arm.joints().iter().map(|joint| &joint.name).enumerate() {
         let Some(this) = fit.get(name) else { continue };
-        let error = error(this);
+        let error = this.error();
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
         // Without findings, a torque that looks like noise is no torque of the model either.
         let is_unrelated = !has_findings && error >= PARTLY;
@@ -142,18 +142,13 @@ pub fn beyond_limits(
 ) {
     let joints = arm.joints();
     unexplained.retain(|open| {
-        let is_small = fit.get(&open.joint).is_some_and(|fit| error(fit) < STRUCTURED);
+        let is_small = fit.get(&open.joint).is_some_and(|fit| fit.error() < STRUCTURED);
         !is_small
             || transients
                 .unexplained
                 .keys()
                 .any(|&joint| joints[joint].name == open.joint)
     });
-}
-
-/// A joint's error with the findings: the held-out one if there is one.
-fn error(fit: &JointFit) -> f64 {
-    fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented)
 }
 
 /// Adds the place where the residual that is `located` is largest to the entries without one.

@@ -14,7 +14,7 @@ use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OFFSET, OWN_FRICTION
 
 use crate::regression::bodies::{PER_LINK, Quadratic, physical, possible_part, prior_about};
 use crate::regression::strengths::Strengths;
-use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR};
+use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, NAMELESS_OFFSET};
 
 /// The prior of the background at strength one: the first columns of a table.
 #[derive(Clone, Debug, Default)]
@@ -185,7 +185,14 @@ impl Prior {
             }
             term if term.is(&OFFSET) => {
                 let is_named = term.joint.is_some_and(|joint| strengths.named_offsets.contains(&joint));
-                if is_named { 0.0 } else { strengths.offset }
+                let is_nameless = term
+                    .joint
+                    .is_some_and(|joint| strengths.nameless_offsets.contains(&joint));
+                match (is_named, is_nameless) {
+                    (true, _) => 0.0,
+                    (false, true) => NAMELESS_OFFSET,
+                    (false, false) => strengths.offset,
+                }
             }
             _ => strengths.friction,
         };

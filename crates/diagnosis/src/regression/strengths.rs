@@ -20,6 +20,9 @@ pub struct Strengths {
     pub gain: f64,
     /// The joints whose constant torque is a named effect, so that it is not in the background.
     pub named_offsets: Vec<usize>,
+    /// The joints whose constant torque has no name, because it may be a part of an unexplained residual. It corrects the model with any
+    /// size.
+    pub nameless_offsets: Vec<usize>,
     /// The joints whose torque constant is a named effect, so that it is not in the background.
     pub named_constants: Vec<usize>,
     /// The joints whose torque constant would be wrong by more than any is, so that it is not in the background either: an effect
@@ -66,6 +69,7 @@ impl Strengths {
             offset: 0.0,
             gain: 0.0,
             named_offsets: Vec::new(),
+            nameless_offsets: Vec::new(),
             named_constants: Vec::new(),
             impossible_constants: Vec::new(),
         }
@@ -257,7 +261,10 @@ impl Strengths {
 
     /// Whether there is no background.
     pub fn is_none(&self) -> bool {
-        !self.is_of_joints() && self.offset == 0.0 && self.links.iter().all(|&rho| rho == 0.0)
+        !self.is_of_joints()
+            && self.offset == 0.0
+            && self.nameless_offsets.is_empty()
+            && self.links.iter().all(|&rho| rho == 0.0)
     }
 }
 

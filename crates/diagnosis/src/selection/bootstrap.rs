@@ -137,6 +137,12 @@ pub fn resample(study: &mut Study, selected: &Selection) -> Resampled {
     }
     study.extend(missing);
     let columns = selected.fit.columns.clone();
+    debug_assert!(
+        study
+            .background()
+            .is_none_or(|background| columns.starts_with(&background.columns)),
+        "the fit is beside another background"
+    );
     let scaled = scaled(study, selected);
     let p = columns.len() + all.len();
     let systems = systems(study, selected, &columns, &all);

@@ -1,7 +1,7 @@
 //! The final fit: the named effects are linearised about the arm that contains them, and effects that fail the last tests are removed.
 
 use effects::arm::Payload;
-use effects::sensor::TorqueScale;
+use effects::sensor::{TorqueOffset, TorqueScale};
 
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
@@ -54,6 +54,11 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
             Some((unclear, why)) => {
                 if why == Unclear::Contradicted {
                     study.refuse(unclear);
+                }
+                if why == Unclear::Residual && study.candidates[unclear].hypothesis.is(&TorqueOffset) {
+                    // A residual with a mean is predicted better with a constant, whatever causes it.
+                    let joint = study.candidates[unclear].joint.filter(|_| study.always_acts(unclear));
+                    study.strengths.nameless_offsets.extend(joint);
                 }
                 drop_name(study, judged, unclear, why.rule());
             }
@@ -114,12 +119,22 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
             let problem = study.problem(&products);
             let pruned = problem.prune(judged.named.clone());
             study.note("costs more evidence than it brings", &judged.named, &pruned);
-            torque_constants::keep_named_ones(study, &pruned.set);
-            judged.named = pruned;
+            judged.named = named_alone(study, pruned);
             let products = study.training_products();
             judged.members = judge::describe(&study.problem(&products), &judged.named);
         }
     }
+}
+
+/// `selected` beside a background of the constants that it does not name, fitted again if it names others than before.
+fn named_alone(study: &mut Study, selected: Selection) -> Selection {
+    let before = study.strengths.clone();
+    torque_constants::keep_named_ones(study, &selected.set);
+    if study.strengths == before {
+        return selected;
+    }
+    let products = study.training_products();
+    study.problem(&products).choose(selected.set, &selected.fit.weights)
 }
 
 fn relinearise_once(study: &mut Study, judged: &mut Judged, as_given: bool) {
@@ -171,14 +186,11 @@ fn prove(study: &mut Study, judged: &mut Judged) {
 }
 
 /// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
-fn give_up(study: &Study, judged: &mut Judged) {
+fn give_up(study: &mut Study, judged: &mut Judged) {
     let fits: Vec<JointFit> = (0..study.data.motions.dof)
         .map(|joint| errors_with(&study.data, &study.table, &judged.named.fit, joint))
         .collect();
-    let is_hopeless = |joint: usize| {
-        let fit = &fits[joint];
-        fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented) > HOPELESS
-    };
+    let is_hopeless = |joint: usize| fits[joint].error() > HOPELESS;
     // Friction that explains a part of the training recordings is present in any case.
     let stays = |&candidate: &usize| {
         let candidate = &study.candidates[candidate];
@@ -190,6 +202,7 @@ fn give_up(study: &Study, judged: &mut Judged) {
     };
     let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
     if set.len() < judged.named.set.len() {
+        torque_constants::keep_named_ones(study, &set);
         let products = study.training_products();
         refit(study, &study.problem(&products), judged, set);
     }
@@ -286,8 +299,7 @@ fn guard(study: &mut Study, judged: &mut Judged) {
                 break;
             };
             study.note(judge::HARMS, &judged.named, &next);
-            torque_constants::keep_named_ones(study, &next.set);
-            judged.named = next;
+            judged.named = named_alone(study, next);
         }
         let products = study.training_products();
         judged.members = judge::describe(&study.problem(&products), &judged.named);

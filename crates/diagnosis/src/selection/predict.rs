@@ -124,7 +124,7 @@ pub fn errors(data: &Data, table: &Table, joint: usize, augmented: &[f64]) -> Jo
 
 /// The error (NRMSE) of a joint with the findings, if it is too large and too regular to be noise.
 pub fn structured(fit: &JointFit) -> Option<f64> {
-    let error = fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented);
+    let error = fit.error();
     let least = error.min(fit.train_nrmse_augmented);
     let is_structured = least >= STRUCTURED
         && least * fit.torque_std >= STRUCTURED_ABOVE_NOISE * fit.noise

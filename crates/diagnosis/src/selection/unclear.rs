@@ -19,8 +19,10 @@ pub enum Unclear {
     Contradicted,
     /// Its onset may be anywhere.
     Onset,
-    /// Its size may be zero, or it may be a part of the residual.
+    /// Its size may be zero.
     Size,
+    /// It may be a part of the residual of its joint.
+    Residual,
 }
 
 impl Unclear {
@@ -30,6 +32,7 @@ impl Unclear {
             Self::Contradicted => "it contradicts other effects, or its own rows",
             Self::Onset => "its onset may be at most of the rows",
             Self::Size => "its interval contains the value without effect",
+            Self::Residual => "it may be a part of what is unexplained on its joint",
         }
     }
 }
@@ -79,8 +82,10 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Contradicted)
         } else if sets_in_anywhere(member) {
             Some(Unclear::Onset)
-        } else if nothing.contains(&member.candidate) || is_part_of_the_residual(study, judged, member) {
+        } else if nothing.contains(&member.candidate) {
             Some(Unclear::Size)
+        } else if is_part_of_the_residual(study, judged, member) {
+            Some(Unclear::Residual)
         } else {
             None
         }
@@ -124,7 +129,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
         let residuals = structured(&fit)
             .into_iter()
-            .chain(has_forms.then_some(fit.train_nrmse_augmented));
+            .chain(has_forms.then(|| fit.error().max(fit.train_nrmse_augmented)));
         factor * residuals.fold(0.0, f64::max) > member.shares[joint]
     };
     match candidate.joint {

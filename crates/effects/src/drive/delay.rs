@@ -26,6 +26,8 @@ static SPEC: Spec = Spec {
     main: &["delay"],
     // A link behind a gap or a spring also lags.
     excludes: &["backlash", "joint_elasticity"],
+    // Neither of two in the cases of `torque_scale` was right; they were up to 1.1 times as large.
+    least_beside_residual: Some(1.5),
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     detectability: Detectability::Sized {

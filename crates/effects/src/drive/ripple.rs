@@ -23,6 +23,8 @@ static SPEC: Spec = Spec {
         Parameter::new("phase", Quantity::Angle),
     ],
     main: &["amplitude"],
+    // The only one in the cases of `torque_scale` was wrong, and 1.2 times as large.
+    least_beside_residual: Some(1.5),
     is_suggested: true,
     may_repeat: true,
     is_periodic: true,

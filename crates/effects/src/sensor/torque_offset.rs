@@ -34,7 +34,8 @@ static SPEC: Spec = Spec {
     may_be_inertial: true,
     // A false one had 12 nats in simulated cases with URDFs wrong by 30 %, the smallest injected ones 29.
     least_beside_inertials: Some(25.0),
-    least_beside_residual: Some(1.0),
+    // None of four in the cases of `torque_scale` was right; they were up to 4.3 times as large.
+    least_beside_residual: Some(6.0),
     against: Against::Position,
     experiment: Some(KNOWN_LOAD),
     ..Spec::EMPTY
