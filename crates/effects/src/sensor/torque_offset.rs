@@ -34,8 +34,9 @@ static SPEC: Spec = Spec {
     may_be_inertial: true,
     // A false one had 12 nats in simulated cases with URDFs wrong by 30 %, the smallest injected ones 29.
     least_beside_inertials: Some(25.0),
-    // None of four in the cases of `torque_scale` was right; they were up to 4.3 times as large.
-    least_beside_residual: Some(6.0),
+    // None of four in the cases of `torque_scale` was right, at up to 4.3 times the residual. Asymmetric friction, which is called an
+    // offset until the recordings decide, may be 4.5 to 6 times the residual where friction differs between recordings.
+    least_beside_residual: Some(4.5),
     against: Against::Position,
     experiment: Some(KNOWN_LOAD),
     ..Spec::EMPTY
