@@ -122,7 +122,9 @@ impl Conclusion {
         });
         let changed = data.motions.changed_at.map(|_| {
             let new = findings.iter().map(|(finding, _)| finding);
-            sentences::changes(new.filter(|finding| finding.change.is_some()))
+            sentences::changes(new.filter(|finding| finding.change.is_some()), |joint| {
+                data.arm.joints().iter().position(|known| known.name == joint)
+            })
         });
         // If a change is named that a load at rest resembles, nothing is to be added.
         let is_named = |(finding, _): &(Finding, _)| {

@@ -141,20 +141,21 @@ pub fn not_compared(data: &Data) -> Option<String> {
 }
 
 /// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
-/// phrase, with all of its places.
-pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>) -> Vec<String> {
+/// phrase, with all of its places in this `order` of the joints.
+pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>, order: impl Fn(&str) -> Option<usize>) -> Vec<String> {
     let mut list: Vec<(String, Vec<&str>)> = Vec::new();
     for finding in findings {
-        let (what, place) = (
-            described(finding, &plain),
-            finding.joint.as_deref().unwrap_or("the whole arm"),
-        );
+        let what = described(finding, &plain);
+        let place = finding.joint.as_deref().unwrap_or("the whole arm");
         match list.iter_mut().find(|(known, _)| *known == what) {
             Some((_, places)) => places.push(place),
             None => list.push((what, vec![place])),
         }
     }
-    let phrase = |(what, places): (String, Vec<&str>)| format!("{}: {what}", enumerated(&places));
+    let phrase = |(what, mut places): (String, Vec<&str>)| {
+        places.sort_by_key(|place| order(place));
+        format!("{}: {what}", enumerated(&places))
+    };
     list.into_iter().map(phrase).collect()
 }
 
@@ -295,12 +296,12 @@ mod tests {
             }
         };
         let findings = [
-            changed("a", 1.1),
-            changed("b", 1.3),
-            changed("c", 1.1),
             changed("d", 1.1),
+            changed("b", 1.3),
+            changed("a", 1.1),
+            changed("c", 1.1),
         ];
-        let phrases = changes(findings.iter());
+        let phrases = changes(findings.iter(), |joint| "abcd".find(joint));
         assert_eq!(phrases.len(), 2, "{phrases:?}");
         assert!(
             phrases[0].starts_with("a, c and d: a measured torque of 1.10 times"),
