@@ -35,6 +35,7 @@ mod search;
 mod selection;
 mod thresholds;
 mod trace;
+mod words;
 
 pub use agreement::{Agreement, agreement, searched};
 pub use data::input::Input;
@@ -51,3 +52,4 @@ pub use options::{Options, Step, Wanted};
 pub use report::*;
 pub use thresholds::{LEAST_ROWS, Thresholds, WORTH_HOLDING};
 pub use trace::{Action, Decision};
+pub use words::list;

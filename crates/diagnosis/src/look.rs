@@ -176,8 +176,8 @@ impl Outcome<'_> {
     /// The new name that is the reason for residuals that `first` leaves unexplained and this look does not, as a clause; `None` if there
     /// is none, or if this look explains less elsewhere.
     ///
-    /// The name must be certain, and as large as a part of the largest of these residuals. The errors of their joints must fall. No other joint may be unexplained, and the
-    /// certain names of `first` on joints that it explains must stay.
+    /// The name must be certain, and as large as a part of the largest of these residuals. The errors of their joints must fall. No
+    /// other joint may be unexplained, and the certain names of `first` on joints that it explains must stay.
     fn reason_beside(&self, first: &Self) -> Option<String> {
         let closed = || first.unexplained.iter().filter(|open| !self.is_open(&open.joint));
         let largest = closed().max_by(|a, b| a.share.total_cmp(&b.share))?;

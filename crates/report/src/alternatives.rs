@@ -20,11 +20,10 @@ pub fn text(finding: &Finding) -> String {
         .iter()
         .partition(|other| Some(other.effect) == common);
     let joints: Vec<&str> = of_all.iter().filter_map(|other| other.joint.as_deref()).collect();
-    let together = match joints.split_last() {
-        Some((last, [_, ..])) => {
+    let together = match joints[..] {
+        [_, _, ..] => {
             let name = words::wording(of_all[0].effect).name;
-            let first = joints[..joints.len() - 1].join(", ");
-            vec![format!("{name} on {first} and {last} together")]
+            vec![format!("{name} on {} together", words::list(&joints))]
         }
         _ => of_all.into_iter().map(one).collect(),
     };

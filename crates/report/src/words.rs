@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use arm::JointKind;
+pub use diagnosis::list;
 use diagnosis::statistics::rms;
 use diagnosis::{Change, Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
 use effects::Regressor;
@@ -157,15 +158,6 @@ pub fn dependence(dependence: &Dependence) -> String {
             Some(name) => format!("the motion of {name}"),
             None => "the motion of another joint".into(),
         },
-    }
-}
-
-/// A, B and C.
-pub fn list(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 

@@ -6,6 +6,7 @@ use recording::RegularRecording;
 
 use crate::data::input::Input;
 use crate::thresholds::{LONG_SECONDS, MOST_SECONDS, SHORT_BESIDE, SHORTEST_WINDOW, USED_WINDOW};
+use crate::words::list;
 
 /// The longest chunk where all is used (s); longer ones are cut, so that memory is bounded.
 const LONGEST: f64 = 60.0;
@@ -153,7 +154,7 @@ impl Used {
                     [first, .., last] if self.whole[role].len() > MOST_NAMED => {
                         format!("; {} of them are used whole, {first} to {last}", self.whole[role].len())
                     }
-                    [names @ .., last] => format!("; {} and {last} are used whole", names.join(", ")),
+                    names => format!("; {} are used whole", list(names)),
                 };
                 format!(
                     "of the {:.0} s of {what} recordings, about {:.0} s are used, in windows of at most {USED_WINDOW:.0} s that are spread \

@@ -10,6 +10,7 @@ use crate::report::{Change, Dependence, Finding, JointFit, Parameter};
 use crate::search::study::moved;
 use crate::selection::naming::may_be_nothing;
 use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS};
+use crate::words::list;
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
 fn number(value: f64) -> String {
@@ -143,28 +144,20 @@ pub fn not_compared(data: &Data) -> Option<String> {
 /// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
 /// phrase, with all of its places in this `order` of the joints.
 pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>, order: impl Fn(&str) -> Option<usize>) -> Vec<String> {
-    let mut list: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut phrases: Vec<(String, Vec<&str>)> = Vec::new();
     for finding in findings {
         let what = described(finding, &plain);
         let place = finding.joint.as_deref().unwrap_or("the whole arm");
-        match list.iter_mut().find(|(known, _)| *known == what) {
+        match phrases.iter_mut().find(|(known, _)| *known == what) {
             Some((_, places)) => places.push(place),
-            None => list.push((what, vec![place])),
+            None => phrases.push((what, vec![place])),
         }
     }
     let phrase = |(what, mut places): (String, Vec<&str>)| {
         places.sort_by_key(|place| order(place));
-        format!("{}: {what}", enumerated(&places))
+        format!("{}: {what}", list(&places))
     };
-    list.into_iter().map(phrase).collect()
-}
-
-/// Several words as "a, b and c".
-fn enumerated(words: &[&str]) -> String {
-    match words {
-        [others @ .., last] if !others.is_empty() => format!("{} and {last}", others.join(", ")),
-        _ => words.concat(),
-    }
+    phrases.into_iter().map(phrase).collect()
 }
 
 /// A value with its unit.

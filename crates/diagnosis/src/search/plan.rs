@@ -1,7 +1,5 @@
 //! The order of the search: suggest, grow, refine, relinearise, swap.
 
-use effects::Acts;
-
 use crate::options::Step;
 use crate::search::connection;
 use crate::search::problem::Selection;
@@ -31,8 +29,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
             .copied()
             .filter(|&c| {
                 let hypothesis = study.candidates[c].hypothesis;
-                let at = Acts::of(&study.terms(c)).time();
-                let sets_in = at.is_some_and(|at| Some(at) != study.data.motions.changed_at);
+                let sets_in = !study.always_acts(c) && !study.changes(c);
                 hypothesis.name().is_some() && !sets_in && !hypothesis.spec().is_suggested
             })
             .collect();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use arm::Matrix3;
 use effects::arm::contact_columns;
 use effects::laws::SIGN;
-use effects::{Grounds, Term};
+use effects::{Acts, Grounds, Term};
 
 use crate::data::Data;
 use crate::data::measure::{self, spans};
@@ -99,6 +99,12 @@ impl Study {
     /// Whether a candidate acts at all times, and not from an onset on.
     pub fn always_acts(&self, candidate: usize) -> bool {
         self.terms(candidate).iter().all(Term::is_always)
+    }
+
+    /// Whether a candidate acts in the recordings from before only, or in the others only.
+    pub fn changes(&self, candidate: usize) -> bool {
+        let at = Acts::of(&self.terms(candidate)).time();
+        at.is_some() && at == self.data.motions.changed_at
     }
 
     /// The candidates that `options` allow, with their columns along `data`.

@@ -1,8 +1,8 @@
 //! Torque constants of all joints that changed together, in the place of changes of masses and friction that imitate them.
 
+use effects::EffectKind;
 use effects::arm::{InertialScale, LinkInertialError};
 use effects::sensor::TorqueScale;
-use effects::{Acts, EffectKind};
 
 use super::Study;
 use crate::regression::fit::Fit;
@@ -76,12 +76,6 @@ impl Study {
         let next = self.with_best_strengths(next);
         let allowed = self.allowed();
         (self.grown(next, &allowed), kept)
-    }
-
-    /// Whether a candidate begins or ends with the recordings from before.
-    fn changes(&self, candidate: usize) -> bool {
-        let at = Acts::of(&self.terms(candidate)).time();
-        at.is_some() && at == self.data.motions.changed_at
     }
 
     /// Whether a candidate is a torque constant that changed.
