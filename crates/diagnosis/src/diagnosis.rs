@@ -39,6 +39,7 @@ impl Diagnosis {
             robot: robot.to_owned(),
             recordings,
             cutoff: None,
+            torque_lag: None,
             verdict: Verdict::UnitsFirst,
             doubts,
             warnings: Vec::new(),

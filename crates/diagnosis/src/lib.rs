@@ -34,6 +34,7 @@ mod report;
 mod search;
 mod selection;
 mod thresholds;
+mod torque_lag;
 mod trace;
 mod words;
 
@@ -51,5 +52,6 @@ pub use findings::sentences::{described, is_undetermined};
 pub use options::{Options, Step, Wanted};
 pub use report::*;
 pub use thresholds::{LEAST_ROWS, Thresholds, WORTH_HOLDING};
+pub use torque_lag::WithoutLag;
 pub use trace::{Action, Decision};
 pub use words::list;

@@ -20,6 +20,7 @@ use crate::thresholds::{
     CERTAIN_ENOUGH, FALLS_TO, LEAST_CUTOFF_PERIODS, LEAST_FOR_DYNAMICS, OF_THE_UNEXPLAINED, SLOWER_FILTER,
     WORTH_SLOWING,
 };
+use crate::torque_lag::TorqueLag;
 use crate::trace::{Action, Trace};
 
 /// The final fit with one filter, and the conclusions.
@@ -42,6 +43,28 @@ impl Look {
         progress: &dyn Fn(Step<'_>),
     ) -> Result<Self, DiagnosisError> {
         Self::within(arm, inputs, options, (None, Trace::default()), progress)
+    }
+
+    /// A look at recordings from which a `lag` of their torques was removed. It continues the trace of the look that showed the lag.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`], if there is nothing to fit.
+    pub fn again(
+        arm: &Arm,
+        inputs: &[Input<'_>],
+        options: &Options,
+        (trace, lag): (Trace, &TorqueLag),
+        progress: &dyn Fn(Step<'_>),
+    ) -> Result<Self, DiagnosisError> {
+        let removed = format!("{:.1} ms", 1e3 * lag.seconds);
+        trace.step([(
+            Action::Lag,
+            removed,
+            None,
+            "the residuals of all joints show this lag",
+            0.0,
+        )]);
+        Self::within(arm, inputs, options, (None, trace), progress)
     }
 
     /// A look that may name what is in `scope` (`None`: everything) and continues a trace.

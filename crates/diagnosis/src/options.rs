@@ -9,6 +9,9 @@ use crate::thresholds::Thresholds;
 pub struct Options {
     /// The half-power frequency of the low-pass filter (Hz); `None` derives it from the recordings.
     pub cutoff: Option<f64>,
+    /// The lag of all recorded torques behind the positions (s), which is removed; negative if they are ahead. `None` estimates it from the
+    /// recordings.
+    pub torque_lag: Option<f64>,
     /// The relative error of the URDF's masses, centres of mass and inertias, as a part of each link's own (0.1: ten per
     /// cent); `None` estimates it from the recordings.
     pub urdf_accuracy: Option<f64>,

@@ -46,6 +46,9 @@ pub struct Report {
     /// The half-power frequency of the low-pass filter through which the recordings were compared (Hz).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cutoff: Option<f64>,
+    /// The lag of all recorded torques behind the positions that was removed (s); negative if they were ahead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque_lag: Option<f64>,
     /// The verdict in one word.
     pub verdict: Verdict,
     /// Doubts about the units, signs, order or zeros of the recordings, with their remedies. No effect is searched before

@@ -17,6 +17,8 @@ pub enum Action {
     Background,
     /// The search begins again with another filter, or its result is kept or not.
     Filter,
+    /// The search begins again with torques without their lag.
+    Lag,
 }
 
 impl fmt::Display for Action {
@@ -27,6 +29,7 @@ impl fmt::Display for Action {
             Self::Dropped => "dropped",
             Self::Background => "background",
             Self::Filter => "filter",
+            Self::Lag => "lag",
         })
     }
 }
@@ -38,7 +41,7 @@ pub struct Decision {
     pub step: usize,
     /// The decision.
     pub action: Action,
-    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a filter, its cut-off.
+    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a filter, its cut-off; for a lag, its length.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,

@@ -179,7 +179,7 @@ type Answer = (Option<Outcome>, Option<PyErr>, Vec<(String, bool)>);
 #[pyfunction]
 #[pyo3(signature = (
     urdf, before, train, held_out, *, base, tip, locks, column_map, known_file, known_text, only, urdf_friction, cutoff,
-    urdf_accuracy, torque_accuracy, as_read, torques_only, next_experiment, threads, progress
+    torque_lag, urdf_accuracy, torque_accuracy, as_read, torques_only, next_experiment, threads, progress
 ))]
 #[expect(clippy::too_many_arguments, reason = "the Python function gives them by name")]
 pub fn diagnose(
@@ -197,6 +197,7 @@ pub fn diagnose(
     only: Option<String>,
     urdf_friction: &str,
     cutoff: Option<f64>,
+    torque_lag: Option<f64>,
     urdf_accuracy: Option<f64>,
     torque_accuracy: Option<f64>,
     as_read: bool,
@@ -233,6 +234,7 @@ pub fn diagnose(
         only,
         urdf_friction,
         cutoff,
+        torque_lag,
         urdf_accuracy,
         torque_accuracy,
         as_read,

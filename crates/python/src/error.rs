@@ -22,6 +22,7 @@ const FLAGS: &[(&str, &str)] = &[
         "testbed inspect --json FILE lists them",
     ),
     ("--held-out", "held_out"),
+    ("--torque-lag", "torque_lag"),
     ("--cutoff", "cutoff"),
     ("--before", "before"),
     ("--robot", "urdf"),

@@ -52,6 +52,7 @@ pub mod statistics;
 mod table;
 mod thinned;
 mod toml_error;
+mod torque_lag;
 mod units;
 mod warning;
 mod whole_file;

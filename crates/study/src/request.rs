@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
-use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted};
+use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted, WithoutLag};
 use effects::Effect;
 use effects::arm::Payload;
 use torque::summed;
@@ -42,6 +42,8 @@ pub struct Request {
     pub urdf_friction: UrdfFriction,
     /// Half-power frequency of the low-pass filter (Hz); `None` derives it from the recordings.
     pub cutoff: Option<f64>,
+    /// The lag of all recorded torques behind the positions (s); `None` estimates it from the recordings.
+    pub torque_lag: Option<f64>,
     /// The relative error of the URDF's inertial parameters; `None` estimates it from the recordings.
     pub urdf_accuracy: Option<f64>,
     /// The relative standard deviation of the torque constants; `None` if it is unknown.
@@ -155,6 +157,7 @@ impl Request {
             .collect();
         let options = Options {
             cutoff: self.cutoff,
+            torque_lag: self.torque_lag,
             urdf_accuracy: self.urdf_accuracy,
             torque_accuracy: self.torque_accuracy,
             known,
@@ -167,6 +170,8 @@ impl Request {
         for remark in &diagnosis.remarks {
             listener.note(remark);
         }
+        let without_lag = WithoutLag::new(&list, diagnosis.report.torque_lag.unwrap_or(0.0));
+        let list = without_lag.of(&list);
         if !self.torques_only {
             let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|step| listener.doing(step))?;
             diagnosis.report = complete.report;

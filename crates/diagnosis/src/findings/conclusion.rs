@@ -207,6 +207,7 @@ impl Conclusion {
                 used_in_part: used_in_part(&motions.sources),
             },
             cutoff: Some(motions.cutoff),
+            torque_lag: None,
             doubts: Vec::new(),
             warnings: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),

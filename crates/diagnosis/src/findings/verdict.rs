@@ -10,10 +10,8 @@ use crate::findings::sentences;
 use crate::findings::transients::Transients;
 use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::selection::FinalFit;
-use crate::selection::predict::{autocorrelation, structured};
-use crate::thresholds::{
-    LEAST_MOTION, PARTLY, POOR, POOR_ABOVE_NOISE, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
-};
+use crate::selection::predict::{autocorrelation, poor, structured};
+use crate::thresholds::{LEAST_MOTION, PARTLY, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING};
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
 /// `fit`; `located` are the places of the nominal residual.
@@ -94,7 +92,7 @@ pub fn poorly_predicted(
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
         // Without findings, a torque that looks like noise is no torque of the model either.
         let is_unrelated = !has_findings && error >= PARTLY;
-        let is_poor = is_unrelated || error >= POOR && error * this.torque_std >= POOR_ABOVE_NOISE * this.noise;
+        let is_poor = is_unrelated || poor(this).is_some();
         let in_training = structured_in_training(last, joint);
         if is_known || !(is_poor || structured(this).is_some() || in_training.is_some()) {
             continue;

@@ -8,7 +8,9 @@ use crate::data::statistics::{deviation, rms};
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::report::JointFit;
-use crate::thresholds::{LEAST_ROWS, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE};
+use crate::thresholds::{
+    LEAST_ROWS, POOR, POOR_ABOVE_NOISE, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE,
+};
 
 /// The residual of the model with the effects and the background of `fit` on all rows of one joint. At rest, dry friction may hold
 /// any torque within its cone, and the error is the distance to the cone.
@@ -130,6 +132,12 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
         && least * fit.torque_std >= STRUCTURED_ABOVE_NOISE * fit.noise
         && fit.residual_autocorrelation > REMEMBERS;
     is_structured.then_some(error)
+}
+
+/// The error (NRMSE) of a joint with the findings, if it is large and above the noise.
+pub fn poor(fit: &JointFit) -> Option<f64> {
+    let error = fit.error();
+    (error >= POOR && error * fit.torque_std >= POOR_ABOVE_NOISE * fit.noise).then_some(error)
 }
 
 /// The autocorrelation of a signal over [`RESIDUAL_LAG`], on the rows that count.

@@ -1,16 +1,21 @@
 //! Effects that the final fit contradicts, or whose size or onset it leaves open.
 
-use effects::Effect;
 use effects::arm::Payload;
+use effects::drive::LATE;
+use effects::{Effect, Term};
 use torque::Corrected;
 
+use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
-use crate::selection::predict::{errors_with, structured};
+use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
-use crate::thresholds::CLEAR_THOUGH_UNDETERMINED;
+use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
+
+/// The lag (s) that stands for every short one: its column is nearly proportional to it.
+const LAG: f64 = 0.005;
 
 /// Why an effect is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +28,8 @@ pub enum Unclear {
     Size,
     /// It may be a part of the residual of its joint.
     Residual,
+    /// A lag of its joints' torques explains as much.
+    Lag,
 }
 
 impl Unclear {
@@ -33,6 +40,7 @@ impl Unclear {
             Self::Onset => "its onset may be at most of the rows",
             Self::Size => "its interval contains the value without effect",
             Self::Residual => "it may be a part of what is unexplained on its joint",
+            Self::Lag => "a lag of its joints' torques explains as much",
         }
     }
 }
@@ -86,6 +94,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Size)
         } else if is_part_of_the_residual(study, judged, member) {
             Some(Unclear::Residual)
+        } else if may_be_a_lag(study, judged, member) {
+            Some(Unclear::Lag)
         } else {
             None
         }
@@ -116,11 +126,14 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
     list
 }
 
-/// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual;
-/// for an effect on the whole arm, on every joint.
+/// Whether the effect is hardly larger than the structured residual of its joint, and of a kind that may be a part of that residual, as every
+/// change may be: what is unexplained may differ between the recordings from before and the others. For an effect on the whole arm, on
+/// every joint.
 fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    let Some(factor) = candidate.hypothesis.spec().least_beside_residual else {
+    let of_change = study.changes(member.candidate).then_some(CHANGE_BESIDE_RESIDUAL);
+    let of_kind = candidate.hypothesis.spec().least_beside_residual;
+    let Some(factor) = of_kind.into_iter().chain(of_change).reduce(f64::max) else {
         return false;
     };
     let is_part = |joint: usize| {
@@ -129,6 +142,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
         let residuals = structured(&fit)
             .into_iter()
+            .chain(of_change.and(poor(&fit)))
             .chain(has_forms.then(|| fit.error().max(fit.train_nrmse_augmented)));
         factor * residuals.fold(0.0, f64::max) > member.shares[joint]
     };
@@ -138,4 +152,27 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
             .filter(|&joint| member.shares[joint] > 0.0)
             .all(is_part),
     }
+}
+
+/// Whether a lag of the torques of the effect's joints explains as much as the effect. Where little accelerates, a lag of the torque of
+/// gravity is a torque along the velocities of all joints that the gravity depends on.
+fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    if !candidate.hypothesis.spec().may_be_lag {
+        return false;
+    }
+    let Selection { fit, .. } = &judged.named;
+    let columns = |keeps: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        let selected = fit.columns[fit.background..].iter().copied();
+        selected.filter(|&column| keeps(column)).collect()
+    };
+    let joints = (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0);
+    let lags = joints.map(|joint| Term::on(&LATE, joint).sized([LAG])).collect();
+    let with = study.fit_with(&columns(&|_| true), Vec::new(), &fit.weights);
+    let lagging = study.fit_with(
+        &columns(&|column| !candidate.columns.contains(&column)),
+        lags,
+        &fit.weights,
+    );
+    lagging.loss <= with.loss
 }

@@ -68,6 +68,9 @@ pub const LEAST_FINAL_SHARE: f64 = 0.01;
 /// parameter may be that of no effect (nats). Source: simulated cases with wrong URDFs, in which effects of up to 1300
 /// nats were dropped because an interval held zero.
 pub const CLEAR_THOUGH_UNDETERMINED: f64 = 20.0;
+/// The multiple of a joint's unexplained residual that a change since the recordings from before must exceed. Source: recordings of a
+/// double pendulum that did not change, in which four changes of 0.1 to 0.6 times the residual were named.
+pub const CHANGE_BESIDE_RESIDUAL: f64 = 1.0;
 /// The evidence of a payload beside links of which only some differ from the URDF, compared with links that all do (nats). Source: two
 /// simulated arms without a payload whose links are all wrong, where it was 6 and 22.
 pub const LEAST_BESIDE_SOME_LINKS: f64 = 30.0;

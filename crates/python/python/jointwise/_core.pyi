@@ -74,6 +74,7 @@ def diagnose(
     only: str | None,
     urdf_friction: str,
     cutoff: float | None,
+    torque_lag: float | None,
     urdf_accuracy: float | None,
     torque_accuracy: float | None,
     as_read: bool,

@@ -44,6 +44,7 @@ def diagnose(
     only: Union[str, Iterable[str], None] = None,
     urdf_friction: Literal["diagnosed", "known", "ignored"] = "diagnosed",
     cutoff: Optional[float] = None,
+    torque_lag: Optional[float] = None,
     urdf_accuracy: Optional[float] = None,
     torque_accuracy: Optional[float] = None,
     as_read: bool = False,
@@ -71,6 +72,7 @@ def diagnose(
     only: Effects to fit in place of a search: `"effect:joint"`, or a file that was written from a diagnosis.
     urdf_friction: Which friction in the URDF is known friction.
     cutoff: Half-power frequency of the low-pass filter (Hz), 0.1 to 1000.
+    torque_lag: The lag of all recorded torques behind the positions, which is removed (s); by default the one on which the joints agree.
     urdf_accuracy: How far the URDF's inertial parameters may be off, as a fraction (0.1: ten per cent).
     torque_accuracy: The relative standard deviation of the torque constants.
     as_read: Diagnoses the recordings as they were read, even if their units, signs, order or zeros seem wrong.
@@ -86,6 +88,7 @@ def diagnose(
     """
     for what, value, low, high in (
         ("cutoff", cutoff, 0.1, 1000.0),
+        ("torque_lag", torque_lag, -0.2, 0.2),
         ("urdf_accuracy", urdf_accuracy, 0.0, 3.0),
         ("torque_accuracy", torque_accuracy, 0.0, 3.0),
         ("jobs", jobs, 1, 1024),
@@ -116,6 +119,7 @@ def diagnose(
         only=None if only is None else only if isinstance(only, str) else ",".join(only),
         urdf_friction=urdf_friction,
         cutoff=cutoff,
+        torque_lag=torque_lag,
         urdf_accuracy=urdf_accuracy,
         torque_accuracy=torque_accuracy,
         as_read=as_read,

@@ -7,7 +7,7 @@ use study::inputs::{Given, Recordings};
 use study::{Known, Request};
 
 use super::chain::ChainArgs;
-use super::numbers::{parse_accuracy, parse_frequency};
+use super::numbers::{parse_accuracy, parse_frequency, parse_lag};
 use super::rerun::{Rerun, parse_rerun};
 use crate::output::{self, OutputFile};
 
@@ -147,6 +147,10 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "HZ", value_parser = parse_frequency, allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
 
+    /// The lag of all recorded torques behind the positions, which is removed (s) [default: the one on which the joints agree, if they do]
+    #[arg(long, value_name = "S", value_parser = parse_lag, allow_negative_numbers = true)]
+    pub torque_lag: Option<f64>,
+
     #[command(flatten)]
     pub chain: ChainArgs,
 }
@@ -168,6 +172,7 @@ impl DiagnoseArgs {
             only: self.only.clone(),
             urdf_friction: self.urdf_friction.into(),
             cutoff: self.cutoff,
+            torque_lag: self.torque_lag,
             urdf_accuracy: self.urdf_accuracy,
             torque_accuracy: self.torque_accuracy,
             as_read: self.as_read,

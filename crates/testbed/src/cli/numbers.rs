@@ -16,6 +16,14 @@ pub fn parse_frequency(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A lag (s).
+pub fn parse_lag(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (-0.2..=0.2).contains(&seconds) => Ok(seconds),
+        _ => Err("give a lag from -0.2 to 0.2 s".into()),
+    }
+}
+
 /// The relative error of the inertial parameters of a URDF.
 pub fn parse_urdf_error(text: &str) -> Result<f64, String> {
     match text.parse() {

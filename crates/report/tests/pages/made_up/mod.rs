@@ -134,6 +134,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         next_experiment: None,
         is_requested: false,
         cutoff: Some(12.0),
+        torque_lag: None,
         verdict: match plot {
             Plot::Clean => Verdict::NoMismatch,
             Plot::Rich => Verdict::PartlyExplained,
