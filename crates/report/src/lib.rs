@@ -19,6 +19,7 @@ mod block_page;
 pub mod chart;
 mod diagnosis_markdown;
 pub mod doubts;
+pub mod left_out;
 mod markdown;
 pub mod next_words;
 pub mod numbers;

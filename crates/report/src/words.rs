@@ -14,6 +14,11 @@ use crate::numbers;
 /// The verdict states the largest held-out error with the effects found if it is at least this (over the torque's standard
 /// deviation).
 const STATED_ERROR: f64 = 0.1;
+/// With a larger error than this (over the torque's standard deviation), the model is not said to explain the recordings, although the
+/// error looks like noise.
+const NOISY: f64 = 0.5;
+/// Most of the mismatch is said to be unexplained if at least this error remains (over the torque's standard deviation).
+const STATED_REST: f64 = 0.2;
 
 /// The texts of an effect.
 pub struct Wording {
@@ -260,13 +265,13 @@ pub fn verdict(report: &Report) -> String {
     let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
         Verdict::NoMismatch if found.is_empty() => format!(
-            "The model explains the recordings{}: no unmodelled effect is detectable in them.",
-            up_to(report)
+            "The model {}: no unmodelled effect is detectable in them.",
+            explains(report)
         ),
         Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
         Verdict::Explained if is_validated => format!(
-            "The model omits {effects} on {on}. With these effects, the model explains the recordings{}.",
-            up_to(report)
+            "The model omits {effects} on {on}. With these effects, the model {}.",
+            explains(report)
         ),
         Verdict::Explained => format!(
             "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
@@ -310,14 +315,20 @@ pub fn verdict(report: &Report) -> String {
     }
 }
 
-/// The largest error on the held-out recordings with the effects found, as a phrase with its joint; empty for a small one.
-fn up_to(report: &Report) -> String {
-    largest_error(report).map_or_else(String::new, |(joint, error)| {
-        format!(
-            " to within {} times the torque's standard deviation ({joint})",
+/// `explains the recordings`, with the largest error on the held-out recordings unless it is small. A large error that looks like noise
+/// is not explained.
+fn explains(report: &Report) -> String {
+    match largest_error(report) {
+        None => "explains the recordings".to_owned(),
+        Some((joint, error)) if error >= NOISY => format!(
+            "agrees with the recordings as far as their noise shows, which is {} times the torque's standard deviation on {joint}",
             numbers::nrmse(error)
-        )
-    })
+        ),
+        Some((joint, error)) => format!(
+            "explains the recordings to within {} times the torque's standard deviation ({joint})",
+            numbers::nrmse(error)
+        ),
+    }
 }
 
 /// The joint with the largest error on the held-out recordings with the effects found, if the error is large enough to be
@@ -330,12 +341,14 @@ fn largest_error(report: &Report) -> Option<(&str, f64)> {
 }
 
 /// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
-/// remains; on held-out recordings where there are any.
+/// and a considerable error remains; on held-out recordings where there are any. Joints that no training recording moves do not count: no
+/// effect is searched on them.
 fn remaining(report: &Report) -> Option<[f64; 2]> {
-    let over_joints = |pick: &dyn Fn(&JointFit) -> f64| rms(report.fit.values().map(pick));
+    let is_fitted = |fit: &&JointFit| fit.train_nrmse_nominal > 0.0;
+    let over_joints = |pick: &dyn Fn(&JointFit) -> f64| rms(report.fit.values().filter(is_fitted).map(pick));
     let before = over_joints(&|fit| fit.held_out_nrmse_nominal.unwrap_or(fit.train_nrmse_nominal))?;
     let after = over_joints(&|fit| fit.held_out_nrmse_augmented.unwrap_or(fit.train_nrmse_augmented))?;
-    (before.is_finite() && after > 0.5 * before).then_some([before, after])
+    (before.is_finite() && after > (0.5 * before).max(STATED_REST)).then_some([before, after])
 }
 
 /// `1 effect`, `3 effects`.

@@ -44,7 +44,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     }
     output::check_distinct(&outputs)?;
     check_replaceable(args)?;
-    outputs.iter().try_for_each(OutputFile::check_ending)?;
+    outputs.iter().try_for_each(OutputFile::check)?;
     let robot = named_robot(&args.robot)?;
     let arm = robot.arm(&args.chain.options(&[])).context("--robot")?;
     for warning in arm.warnings() {

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
-use std::io::Write;
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use anyhow::bail;
+use anyhow::{Context, bail, ensure};
 use serde::Serialize;
 
 /// `text` with its control characters as `\u001b`, so that names from files cannot command a terminal; line breaks and tabs remain. So
@@ -102,37 +102,96 @@ pub fn write_text(path: &Path, text: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A file to write: the option that asks for it, its path, and the endings that the name of a file of its format may have.
+/// The bytes at the beginning and at the end of a file among which its mark is looked for.
+const MARKED: u64 = 1 << 16;
+
+/// A file to write.
 #[derive(Clone, Copy, Debug)]
 pub struct OutputFile<'a> {
+    /// The option that asks for it.
     pub option: &'static str,
     pub path: &'a Path,
     /// The endings of the file's name that are accepted, in lower case and without the dot.
     pub endings: &'static [&'static str],
+    /// What each earlier output of this kind has at its beginning or end, by which a file is recognised that may be replaced. Empty: the
+    /// command has its own check, or none.
+    pub mark: &'static str,
 }
 
 impl<'a> OutputFile<'a> {
     /// The file at `path`, if the option was given.
     pub fn given(option: &'static str, path: Option<&'a Path>, endings: &'static [&'static str]) -> Option<Self> {
-        path.map(|path| Self { option, path, endings })
+        path.map(|path| Self {
+            option,
+            path,
+            endings,
+            mark: "",
+        })
+    }
+
+    /// The file, which replaces only files with this mark.
+    pub fn marked(self, mark: &'static str) -> Self {
+        Self { mark, ..self }
     }
 
     /// The file of `--json`.
     pub fn json(path: &'a Path) -> Self {
-        let (option, endings) = ("--json", &["json"]);
-        Self { option, path, endings }
+        let (option, endings, mark) = ("--json", &["json"], "\"schema\": \"testbed.");
+        Self {
+            option,
+            path,
+            endings,
+            mark,
+        }
     }
 
     /// The file of `--markdown`.
     pub fn markdown(path: &'a Path) -> Self {
-        let (option, endings) = ("--markdown", &["md", "markdown"]);
-        Self { option, path, endings }
+        let (option, endings, mark) = ("--markdown", &["md", "markdown"], "");
+        Self {
+            option,
+            path,
+            endings,
+            mark,
+        }
     }
 
     /// The file of `--rerun save=FILE`.
     pub fn rerun(path: &'a Path) -> Self {
-        let (option, endings) = ("--rerun save", &["rrd"]);
-        Self { option, path, endings }
+        let (option, endings, mark) = ("--rerun save", &["rrd"], "");
+        Self {
+            option,
+            path,
+            endings,
+            mark,
+        }
+    }
+
+    /// Refuses a name of another format, and a file of the user that would be replaced.
+    ///
+    /// # Errors
+    /// If it is one.
+    pub fn check(&self) -> anyhow::Result<()> {
+        self.check_ending()?;
+        self.check_replaceable()
+    }
+
+    /// Refuses to replace a file that is not an earlier output of this kind. Empty files, devices and pipes are accepted.
+    ///
+    /// # Errors
+    /// If there is one, or if it cannot be read.
+    fn check_replaceable(&self) -> anyhow::Result<()> {
+        if self.mark.is_empty() || !self.path.is_file() || is_stdout(Some(self.path)) {
+            return Ok(());
+        }
+        let is_earlier = has_mark(self.path, self.mark).with_context(|| self.path.display().to_string())?;
+        ensure!(
+            is_earlier,
+            "{} {}: exists and was not written by this option; give another file, or remove it first",
+            self.option,
+            self.path.display()
+        );
+        Ok(())
     }
 
     /// Refuses a name with the ending of another format, which other programs would read as that format, and standard output
@@ -140,7 +199,7 @@ impl<'a> OutputFile<'a> {
     ///
     /// # Errors
     /// If the name has another ending, with those that it may have.
-    pub fn check_ending(&self) -> anyhow::Result<()> {
+    fn check_ending(&self) -> anyhow::Result<()> {
         if self.path == Path::new("-") && self.option != "--json" {
             bail!("{} -: only --json writes to standard output; name a file", self.option);
         }
@@ -158,6 +217,22 @@ impl<'a> OutputFile<'a> {
             self.endings.join(" or .")
         );
     }
+}
+
+/// Whether a file is empty, or has `mark` near its beginning or end.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn has_mark(path: &Path, mark: &str) -> std::io::Result<bool> {
+    let mut file = std::fs::File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut has = |from: u64| -> std::io::Result<bool> {
+        let mut bytes = Vec::new();
+        file.seek(SeekFrom::Start(from))?;
+        Read::by_ref(&mut file).take(MARKED).read_to_end(&mut bytes)?;
+        Ok(bytes.windows(mark.len()).any(|window| window == mark.as_bytes()))
+    };
+    Ok(length == 0 || has(0)? || has(length.saturating_sub(MARKED))?)
 }
 
 /// Refuses a file that could not be written, before any work is done for it.

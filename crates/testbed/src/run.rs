@@ -193,7 +193,7 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
     asked
         .into_iter()
         .chain(rerun.as_deref().map(OutputFile::rerun))
-        .try_for_each(|file| file.check_ending())
+        .try_for_each(|file| file.check())
 }
 
 /// The mean squared error of the model's torque on the reference, one per joint ((N m)² or N²), as in the paper.

@@ -144,7 +144,7 @@ fn simulate(
         .collect();
     if !names.is_empty() {
         remarks.push(format!(
-            "{} follow{} the recorded motion, because no training recording moves {}",
+            "{} follow{} the recorded motion, because no training recording has motion and torque of {}",
             names.join(", "),
             if names.len() == 1 { "s" } else { "" },
             if names.len() == 1 { "it" } else { "them" },

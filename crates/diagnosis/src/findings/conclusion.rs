@@ -11,7 +11,7 @@ use super::inertials::{Inertials, inertials, leave_out_single_links};
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
-use super::verdict::{beyond_limits, not_enough, poorly_predicted, unexplained, verdict, with_places};
+use super::verdict::{ask_for_motion, beyond_limits, not_enough, poorly_predicted, unexplained, verdict, with_places};
 use super::{dual_sensor, sentences, transients};
 use crate::data::Data;
 use crate::data::input::Input;
@@ -114,6 +114,7 @@ impl Conclusion {
             }
             with_places(&open, &mut unexplained);
         }
+        ask_for_motion(last, &mut unexplained);
         findings.sort_by(|(a, _), (b, _)| {
             b.share
                 .total_cmp(&a.share)

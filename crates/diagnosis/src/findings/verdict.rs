@@ -98,18 +98,24 @@ pub fn poorly_predicted(
             continue;
         }
         let error = error.max(in_training.unwrap_or(0.0));
-        let was_fitted = !study.table.moving_rows(joint, &study.data.fitted).is_empty();
         unexplained.push(Unexplained {
             joint: name.clone(),
             share: error,
             depends_on: Vec::new(),
-            next: if was_fitted {
-                sentences::next_experiment(name, None)
-            } else {
-                format!("add a training recording in which {name} moves")
-            },
+            next: sentences::next_experiment(name, None),
             time: Vec::new(),
         });
+    }
+}
+
+/// Asks for a training recording of joints that none moves.
+pub fn ask_for_motion(last: &FinalFit, unexplained: &mut [Unexplained]) {
+    let study = &last.study;
+    let joints = study.data.arm.joints().iter().enumerate();
+    for (_, described) in joints.filter(|(joint, _)| study.table.moving_rows(*joint, &study.data.fitted).is_empty()) {
+        for open in unexplained.iter_mut().filter(|open| open.joint == described.name) {
+            open.next = format!("add a training recording in which {} moves", described.name);
+        }
     }
 }
 

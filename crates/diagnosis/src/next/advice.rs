@@ -82,7 +82,12 @@ fn instead(finding: &str, rival: &str) -> &'static str {
             .max_by_key(|experiment| experiment.rank)
             .map(|experiment| experiment.text)
     };
-    effects::experiment_against(finding, rival).or_else(of_one).unwrap_or(
+    let of_kind = || {
+        effects::spec(finding)
+            .map(|spec| spec.distinguished_by)
+            .filter(|text| !text.is_empty())
+    };
+    effects::experiment_against(finding, rival).or_else(of_one).or_else(of_kind).unwrap_or(
         "add a sensor (a torque sensor or an encoder on the link side of the gear), or attach a known load to the tool",
     )
 }

@@ -1,8 +1,9 @@
 //! The findings as a table.
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Width};
-use diagnosis::{Finding, Report};
+use diagnosis::{Finding, Report, Unexplained};
 
+use super::steps::by_size;
 use super::{WIDTH, error, error_of, recordings};
 use crate::{numbers, words};
 
@@ -34,13 +35,25 @@ pub fn columns(report: &Report) -> String {
     } else {
         ""
     };
+    let unexplained = if report.unexplained.is_empty() {
+        ""
+    } else {
+        "; unexplained: the residual on the recordings, training or held-out, on which it is larger"
+    };
     format!(
         "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \
-         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found{undetermined}{without_share}{before}"
+         effect's torque; error: RMS torque error on the {recordings} recordings, nominal model → with the effects found{undetermined}{without_share}{before}{unexplained}"
     )
 }
 
-/// The findings by joint, the joint with the largest share first, and the joints of which only a residual is known.
+/// The row of an unexplained residual, with the cells of its joint and of the joint's error.
+fn residual(open: &Unexplained, [joint, error]: [String; 2]) -> [String; 5] {
+    let size = numbers::share(open.share);
+    [joint, "unexplained".to_owned(), "–".to_owned(), size, error]
+}
+
+/// The findings by joint, the joint with the largest share first, each with the joint's unexplained residual; then the joints of which
+/// only a residual is known.
 pub fn table(report: &Report) -> String {
     let mut table = super::table(["joint", "effect", "size", "share", "error"].map(str::to_owned));
     table.set_content_arrangement(ContentArrangement::Dynamic);
@@ -91,22 +104,19 @@ pub fn table(report: &Report) -> String {
                 },
             ]);
         }
-    }
-    for open in &report.unexplained {
-        if report
-            .findings
+        let open = report
+            .unexplained
             .iter()
-            .any(|finding| finding.joint.as_ref() == Some(&open.joint))
-        {
-            continue;
+            .find(|open| Some(open.joint.as_str()) == joint);
+        if let Some(open) = open {
+            table.add_row(residual(open, [String::new(), String::new()]));
         }
-        table.add_row([
-            open.joint.clone(),
-            "unexplained".to_owned(),
-            "–".to_owned(),
-            numbers::share(open.share),
-            error_of(report, &open.joint),
-        ]);
+    }
+    for open in by_size(report) {
+        let has_finding = |finding: &Finding| finding.joint.as_ref() == Some(&open.joint);
+        if !report.findings.iter().any(has_finding) {
+            table.add_row(residual(open, [open.joint.clone(), error_of(report, &open.joint)]));
+        }
     }
     table
         .to_string()
@@ -143,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_with_a_residual_alone_and_the_other_joint_of_a_coupling_are_shown() {
+    fn residuals_and_the_other_joint_of_a_coupling_are_shown() {
         let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
         let mut coupling = Finding::of(Effect::of(&TransmissionCoupling).on("a".to_owned()));
         coupling.other = Some("b".to_owned());
@@ -160,7 +170,7 @@ mod tests {
         assert!(shown.contains("transmission coupling with b"), "{shown}");
         let rows: Vec<&str> = shown.lines().filter(|line| line.contains("unexplained")).collect();
         assert!(
-            matches!(rows[..], [row] if row.starts_with("c ") && row.contains("43 %")),
+            matches!(rows[..], [own, alone] if own.starts_with("  ") && alone.starts_with("c ") && alone.contains("43 %")),
             "{shown}"
         );
     }

@@ -1,6 +1,6 @@
 //! The next steps after a diagnosis, the most important first.
 
-use diagnosis::{Report, Verdict};
+use diagnosis::{Report, Unexplained, Verdict};
 
 use super::{largest, unexplained};
 use crate::{alternatives, next_words, words};
@@ -27,10 +27,17 @@ pub fn of(report: &Report) -> Vec<String> {
     steps
 }
 
-/// The joints with unexplained residuals, those with the same next experiment together.
+/// The unexplained residuals, the largest first.
+pub fn by_size(report: &Report) -> Vec<&Unexplained> {
+    let mut list: Vec<&Unexplained> = report.unexplained.iter().collect();
+    list.sort_by(|a, b| b.share.total_cmp(&a.share));
+    list
+}
+
+/// The joints with unexplained residuals, those with the same next experiment together; the largest residual first.
 fn residuals(report: &Report) -> Vec<String> {
-    let mut groups: Vec<Vec<&diagnosis::Unexplained>> = Vec::new();
-    for open in &report.unexplained {
+    let mut groups: Vec<Vec<&Unexplained>> = Vec::new();
+    for open in by_size(report) {
         match groups.iter_mut().find(|group| group[0].next == open.next) {
             Some(group) => group.push(open),
             None => groups.push(vec![open]),

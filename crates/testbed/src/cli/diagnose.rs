@@ -183,16 +183,22 @@ impl DiagnoseArgs {
 
     /// The files that will be written.
     pub fn outputs(&self) -> Vec<OutputFile<'_>> {
+        let given = OutputFile::given;
         let files = [
             self.json_file().map(OutputFile::json),
-            OutputFile::given("--report", self.report.as_deref(), &["html", "htm"]),
-            self.markdown.as_deref().map(OutputFile::markdown),
-            OutputFile::given("--residuals", self.residuals.as_deref(), &["csv", "parquet"]),
-            OutputFile::given("--model", self.model.as_deref(), &["toml"]),
-            OutputFile::given("--urdf", self.urdf.as_deref(), &["urdf", "xml"]),
-            OutputFile::given("--trace", self.trace.as_deref(), &["csv"]),
-            OutputFile::given("--mjcf", self.mjcf.as_deref(), &["xml", "mjcf"]),
-            OutputFile::given("--next", self.next.as_deref(), &["toml"]),
+            given("--report", self.report.as_deref(), &["html", "htm"]).map(|file| file.marked("<title>Diagnosis of ")),
+            self.markdown
+                .as_deref()
+                .map(OutputFile::markdown)
+                .map(|file| file.marked("# Diagnosis of ")),
+            given("--residuals", self.residuals.as_deref(), &["csv", "parquet"]).map(|file| file.marked("measured_")),
+            given("--model", self.model.as_deref(), &["toml"]).map(|file| file.marked("schema = \"testbed.model/")),
+            given("--urdf", self.urdf.as_deref(), &["urdf", "xml"])
+                .map(|file| file.marked("Corrected by testbed diagnose")),
+            given("--trace", self.trace.as_deref(), &["csv"]).map(|file| file.marked("step,action,effect,")),
+            given("--mjcf", self.mjcf.as_deref(), &["xml", "mjcf"])
+                .map(|file| file.marked("Written by testbed diagnose")),
+            given("--next", self.next.as_deref(), &["toml"]),
             self.rerun_file().map(OutputFile::rerun),
         ];
         files.into_iter().flatten().collect()

@@ -112,6 +112,11 @@ fn print(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<
     for (path, omitted) in &written.omitted {
         say(format!("not in {}:\n  {}\n", path.display(), omitted.join("\n  ")))?;
     }
+    if [&args.model, &args.urdf, &args.mjcf].into_iter().any(Option::is_some) {
+        for note in report::left_out::notes(report) {
+            say(report::terminal::wrapped(&note, ""))?;
+        }
+    }
     if let Some(path) = written.removed {
         say(format!(
             "removed: {} of an earlier diagnosis, because this one proposes no motion\n",

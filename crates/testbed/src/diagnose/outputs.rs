@@ -40,5 +40,5 @@ pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
         output::check_is_no_input(path, inputs)?;
     }
     output::check_distinct(&outputs)?;
-    outputs.iter().try_for_each(OutputFile::check_ending)
+    outputs.iter().try_for_each(OutputFile::check)
 }

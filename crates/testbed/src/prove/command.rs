@@ -33,7 +33,7 @@ use crate::written::Written;
 pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
-        OutputFile::markdown(path).check_ending()?;
+        OutputFile::markdown(path).check()?;
     }
     ensure!(
         !args.chain.is_given() || (args.cases_from.is_none() && args.published.is_none() && args.merge.is_none()),

@@ -37,6 +37,15 @@ impl RunFolder {
         }
         ensure!(existing.is_dir(), "{} ({} is a file)", remedy(), existing.display());
         tempfile::tempfile_in(existing).with_context(remedy)?;
+        let [recording, summary] = ["recording.csv", "summary.json"].map(|name| folder.join(name));
+        let is_earlier = summary.is_file() && output::has_mark(&summary, "\"schema\": \"testbed.run/")?;
+        for own in [&recording, &summary] {
+            ensure!(
+                is_earlier || out.is_none() || !own.exists(),
+                "{}: exists and is not of an earlier run; give another folder with --out DIR",
+                own.display()
+            );
+        }
         Ok(())
     }
 
