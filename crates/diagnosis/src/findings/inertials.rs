@@ -14,8 +14,10 @@ use crate::search::study::About;
 use crate::selection::FinalFit;
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
-use crate::selection::special_forms::special_forms;
-use crate::thresholds::{LEAST_WRONG_EVERYWHERE, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC};
+use crate::selection::special_forms::{in_place_of_link, special_forms};
+use crate::thresholds::{
+    LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC,
+};
 
 /// The links that differ from the URDF.
 #[derive(Clone, Debug, Default)]
@@ -185,28 +187,39 @@ pub fn inertials(last: &FinalFit) -> Inertials {
     let explained: Vec<bool> = (0..dof)
         .map(|joint| errors_with(data, table, &judged.named.fit, joint).train_nrmse_augmented < PARTLY)
         .collect();
-    // The margin of a link over the best other link (nats), and the links that explain nearly as much in its place, the
-    // best first.
+    let confusable = |(form, joint): (Hypothesis, Option<usize>)| Confusable {
+        effect: form.name().unwrap_or_default(),
+        joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
+    };
+    // The margin of a link over the best other link or effect (nats), and the links that explain nearly as much in its place, the
+    // best first, then such effects.
     let instead = |link: usize| -> (f64, Vec<Confusable>) {
         let [score, loss] = study.evidence_of_link(&judged.named, link);
         let mut others = study.in_other_links(&judged.named, link);
         others.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
-        let margin = others.iter().map(|(_, lost)| lost[0]).fold(score, f64::min);
+        let forms = in_place_of_link(study, &judged.named, link);
+        let lost = others.iter().map(|(_, lost)| lost[0]);
+        let margin = lost
+            .chain(forms.iter().map(|(beyond, _)| *beyond))
+            .fold(score, f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
             effect: InertialParameters.spec().name,
             joint: Some(data.arm.joints()[other].name.clone()),
         });
-        (margin, rivals.collect())
+        (
+            margin,
+            rivals
+                .chain(forms.into_iter().map(|(_, form)| confusable(form)))
+                .collect(),
+        )
     };
     // The alternatives of links that are all wrong: effects beside links that are less wrong.
     let everywhere = || -> Vec<Confusable> {
-        let forms = special_forms(study, &judged.named);
-        let confusable = |(form, joint): (Hypothesis, Option<usize>)| Confusable {
-            effect: form.name().unwrap_or_default(),
-            joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
-        };
-        forms.into_iter().map(confusable).collect()
+        special_forms(study, &judged.named)
+            .into_iter()
+            .map(confusable)
+            .collect()
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside unmodelled structure on a joint, the changes may be a part of that structure.
@@ -238,7 +251,12 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         .members
         .iter()
         .any(|member| study.candidates[member.candidate].hypothesis.is(&Payload));
-    for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
+    // Torque constants that deviate a little are more ordinary than one wrong link among right ones.
+    let is_wrong = |link: usize| study.in_torque_constants(&judged.named, link) >= LINK_OVER_CONSTANTS;
+    for &link in apart
+        .iter()
+        .filter(|&&link| !(has_payload && link + 1 == dof) && is_wrong(link))
+    {
         let name = &data.arm.joints()[link].name;
         let parameters = list
             .links

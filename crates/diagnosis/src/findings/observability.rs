@@ -11,7 +11,7 @@ use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
 use crate::selection::FinalFit;
 use crate::selection::of_noise::noise;
-use crate::thresholds::{BEYOND, HIDDEN};
+use crate::thresholds::{BEYOND, HIDDEN, SURELY_SEEN};
 
 /// Why an effect is not testable whose torque others resemble.
 const EXPLAINED: &str = "the effects found explain the same torque in these motions";
@@ -265,7 +265,8 @@ pub fn needed(last: &FinalFit, candidate: &Candidate) -> f64 {
     least.max(beside_inertials.unwrap_or(0.0))
 }
 
-/// Whether an effect with a coefficient of one would have been detected at its size.
+/// Whether an effect with a coefficient of one would surely have been detected at its size. Its torque is simulated along the recorded motion,
+/// and a real one differs from it, so that a part of it must suffice.
 fn is_seen(last: &FinalFit, candidate: &Candidate, joint: usize) -> bool {
     let (study, products) = (&last.study, &last.products);
     let column = candidate.columns[0];
@@ -274,8 +275,9 @@ fn is_seen(last: &FinalFit, candidate: &Candidate, joint: usize) -> bool {
     let noise = noise(study, candidate, joint);
     let count = products.count[joint].max(1.0);
     let drop = products.drop_of(&study.table, fit, column) - 2.0 * noise * count * fit.weights[joint];
-    let nats = 0.5 * products.evidence[joint] * (1.0 + drop.max(0.0) / count).ln();
-    let torque = (spread(last, joint, column).powi(2) - noise).max(0.0).sqrt();
+    let drop = SURELY_SEEN * SURELY_SEEN * drop.max(0.0);
+    let nats = 0.5 * products.evidence[joint] * (1.0 + drop / count).ln();
+    let torque = SURELY_SEEN * (spread(last, joint, column).powi(2) - noise).max(0.0).sqrt();
     let share = study.data.share(joint, torque);
     nats > needed(last, candidate) && share > study.thresholds.least_share
 }

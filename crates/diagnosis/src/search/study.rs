@@ -28,6 +28,7 @@ mod about;
 mod anew;
 mod constants;
 mod formed;
+mod links;
 mod notes;
 mod payloads;
 mod strengths;

@@ -39,6 +39,21 @@ pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
     forms
 }
 
+/// The special forms that are nearly as likely as a `link` that differs more than most links, beside one that does not: each with its
+/// score beyond that of `selected` (nats), the most likely first.
+pub fn in_place_of_link(study: &Study, selected: &Selection, link: usize) -> Vec<(f64, Rival)> {
+    let mut strengths = study.strengths.clone();
+    strengths.links[link] = strengths.common();
+    let mut forms: Vec<(f64, Rival)> = beside(study, selected, &strengths)
+        .into_iter()
+        .map(|(score, form)| (score - selected.score, form))
+        .filter(|(beyond, _)| *beyond < NEARLY_AS_LIKELY)
+        .collect();
+    forms.sort_by(|a, b| a.0.total_cmp(&b.0));
+    forms.truncate(MOST_SPECIAL_FORMS);
+    forms
+}
+
 /// The most promising special forms beside links of these `strengths`, each with its score (nats).
 fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Rival)> {
     let products = study.products_at(strengths);

@@ -28,8 +28,8 @@ static SPEC: Spec = Spec {
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     detectability: Detectability::Sized {
-        because: "a smaller gap is crossed too quickly to be detected",
-        if_none: "the load on the joint does not change its sign, so that a gap is never crossed",
+        because: "a smaller gap may be crossed too quickly to be detected",
+        if_none: "the load on the joint hardly changes its sign, so that a gap may never be crossed",
         is_seen_below: false,
     },
     not_testable_turn: 3,

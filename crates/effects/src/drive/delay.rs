@@ -31,8 +31,8 @@ static SPEC: Spec = Spec {
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     detectability: Detectability::Sized {
-        because: "a shorter delay changes the torque by less than the noise",
-        if_none: "no delay that a drive has changes the torque by more than the noise",
+        because: "a shorter delay may change the torque by too little to be detected",
+        if_none: "a delay as long as a drive may have changes the torque by too little to be detected surely",
         is_seen_below: false,
     },
     not_testable_turn: 5,

@@ -31,8 +31,8 @@ static SPEC: Spec = Spec {
     is_simulated: true,
     experiment: Some(SECOND_ENCODER),
     detectability: Detectability::Sized {
-        because: "a stiffer joint deflects less than these recordings can resolve",
-        if_none: "a joint of any usual stiffness deflects less than these recordings can resolve",
+        because: "a stiffer joint may deflect too little to be detected",
+        if_none: "a joint of any usual stiffness may deflect too little to be detected",
         is_seen_below: true,
     },
     not_testable_turn: 4,

@@ -62,36 +62,8 @@ impl Study {
         (without.score - selected.score, outside)
     }
 
-    /// The loss of score and likelihood of `selected` (nats) if `link` differs from the URDF no more than most links.
-    pub fn evidence_of_link(&self, selected: &Selection, link: usize) -> [f64; 2] {
-        let mut links = self.strengths.links.clone();
-        links[link] = self.strengths.common();
-        let (_, without) = self.with_links(selected, links);
-        [without.score - selected.score, without.fit.loss - selected.fit.loss]
-    }
-
-    /// The links that may differ from the URDF in the place of `link`, each with the loss of score and likelihood of `selected`
-    /// (nats).
-    pub fn in_other_links(&self, selected: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
-        let common = self.strengths.common();
-        let as_most = |&other: &usize| self.strengths.links[other] == common;
-        let others: Vec<usize> = (0..self.data.arm.dof()).filter(as_most).collect();
-        others
-            .into_par_iter()
-            .map(|other| {
-                let mut links = self.strengths.links.clone();
-                links.swap(link, other);
-                let (_, instead) = self.with_links(selected, links);
-                (
-                    other,
-                    [instead.score - selected.score, instead.fit.loss - selected.fit.loss],
-                )
-            })
-            .collect()
-    }
-
     /// The products and the fit of `selected` with other strengths of the links' inertial parameters.
-    fn with_links(&self, selected: &Selection, links: Vec<f64>) -> (Products, Selection) {
+    pub(super) fn with_links(&self, selected: &Selection, links: Vec<f64>) -> (Products, Selection) {
         let strengths = Strengths {
             links,
             ..self.strengths.clone()
