@@ -2,8 +2,10 @@
 
 use std::process::{Command, Stdio};
 
+use crate::diagnose_made::arguments;
+use crate::diagnose_refusals::case;
 use crate::faults::{OUTPUTS, SCENARIO, diagnose, files, run_of};
-use crate::support::Sandbox;
+use crate::support::{Sandbox, says};
 
 /// Runs the program where no file may be larger than `blocks` of 512 bytes, which fails as a full disk does.
 fn on_a_full_disk(sandbox: &Sandbox, arguments: &[String], blocks: u32) -> std::process::Output {
@@ -168,4 +170,35 @@ fn a_read_only_folder_is_reported_before_the_work() {
         let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
         assert!(sandbox.refuse(&list).contains("cannot be written"));
     }
+}
+
+/// A mistyped name must not cost a recording, a robot or a column map; an earlier output is replaced.
+#[test]
+fn only_earlier_outputs_are_replaced() {
+    let case = case();
+    for (option, name, text) in [
+        ("--residuals", "own.csv", "t,q_a,tau_a\n0,0,0\n"),
+        ("--trace", "own.csv", "t,q_a,tau_a\n0,0,0\n"),
+        ("--urdf", "own.urdf", crate::diagnose_made::URDF),
+        ("--mjcf", "own.xml", crate::diagnose_made::URDF),
+        ("--model", "own.toml", "[a]\nq = \"p\"\n"),
+        ("--json", "own.json", "{\"a\": 1}\n"),
+        ("--report", "own.html", "<title>mine</title>\n"),
+        ("--markdown", "own.md", "# Mine\n"),
+    ] {
+        case.sandbox.write(name, text);
+        let message = case.sandbox.refuse(&arguments(&[option, name]));
+        says(&message, &[option, name, "exists and was not written by this option"]);
+        assert_eq!(case.text(name), text);
+        std::fs::remove_file(case.sandbox.path(name)).expect("it is there");
+        case.sandbox.succeed(&arguments(&[option, name]));
+        let again = case.sandbox.succeed(&arguments(&[option, name]));
+        assert!(again.contains("in place of an earlier one"), "{option}: {again}");
+    }
+    std::fs::create_dir(case.sandbox.path("run")).expect("it can be made");
+    case.sandbox.write("run/recording.csv", "t,q_a,tau_a\n");
+    let message = case
+        .sandbox
+        .refuse(&["--scenario", "taskD", "--model", "rigid-body", "--out", "run"]);
+    says(&message, &["recording.csv", "not of an earlier run", "--out"]);
 }

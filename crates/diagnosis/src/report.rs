@@ -69,8 +69,7 @@ pub struct Report {
     pub not_enough_data: Vec<String>,
     /// Where the nominal model differs from the recordings, joint by joint.
     pub located: Vec<Located>,
-    /// How well each joint's torque is predicted. Joints whose channel holds no torque, or none in the held-out
-    /// recordings, are not in it.
+    /// How well each joint's torque is predicted, without joints that have none, or none in the held-out recordings.
     pub fit: BTreeMap<String, JointFit>,
     /// What changed since the recordings from before, if there are such recordings: places and effects as noun phrases. The same change
     /// on several joints is one phrase.
@@ -84,8 +83,7 @@ pub struct Report {
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub inertials: BTreeMap<String, LinkInertials>,
     /// The constant torques that correct the joints and that no finding names: small offsets of the torque sensors of most joints, and
-    /// constants that may be a part of what is unexplained on their joint.
-    /// Empty if the recordings need none.
+    /// constants that may be a part of what is unexplained on their joint. Empty if the recordings need none.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub constant_torques: BTreeMap<String, Parameter>,
     /// How closely the simulated arm follows the recorded one; empty where it was not simulated.

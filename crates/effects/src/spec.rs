@@ -287,8 +287,6 @@ pub struct Spec {
     pub is_suggested: bool,
     /// Whether it may be a part of inertial parameters that differ from the URDF's.
     pub may_be_inertial: bool,
-    /// A lag of the torques of its joints may be taken for it.
-    pub may_be_lag: bool,
     /// The effect with the same torque if this one acts on all joints.
     pub same_on_all_joints: Option<&'static str>,
     /// Effects on the same joint, with the part of each that this one must exceed, because the error of their forms resembles
@@ -359,7 +357,6 @@ impl Spec {
         may_be_in_one_recording: false,
         is_suggested: false,
         may_be_inertial: false,
-        may_be_lag: false,
         same_on_all_joints: None,
         least_beside: &[],
         least_beside_residual: None,

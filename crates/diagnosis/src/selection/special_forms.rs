@@ -8,10 +8,10 @@ use crate::regression::strengths::Strengths;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::rivals::Rival;
-use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, SPECIAL_FORMS_TRIED};
+use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, NEARLY_NATS, SPECIAL_FORMS_TRIED};
 
 /// The special forms that the recordings do not exclude, the best first: those that are as likely beside a smaller correction of
-/// the links, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
+/// the links, or explain as much beside it, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
 pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
     let links = |strengths: &Strengths| strengths.links.clone();
     let is_smaller =
@@ -20,7 +20,8 @@ pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
     let mut scores: Vec<(f64, Rival)> = smaller
         .into_par_iter()
         .flat_map_iter(|strengths| beside(study, selected, &strengths))
-        .filter(|(score, _)| *score < selected.score + NEARLY_AS_LIKELY)
+        .filter(|(next, _)| is_nearly_as_good(next, selected))
+        .map(|(next, form)| (next.score, form))
         .collect();
     scores.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut forms: Vec<Rival> = Vec::new();
@@ -46,16 +47,28 @@ pub fn in_place_of_link(study: &Study, selected: &Selection, link: usize) -> Vec
     strengths.links[link] = strengths.common();
     let mut forms: Vec<(f64, Rival)> = beside(study, selected, &strengths)
         .into_iter()
-        .map(|(score, form)| (score - selected.score, form))
-        .filter(|(beyond, _)| *beyond < NEARLY_AS_LIKELY)
+        .filter(|(next, _)| is_nearly_as_good(next, selected))
+        .map(|(next, form)| (next.score - selected.score, form))
         .collect();
     forms.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut known: Vec<Rival> = Vec::new();
+    forms.retain(|(_, form)| {
+        let is_new = !known.contains(form);
+        known.push(*form);
+        is_new
+    });
     forms.truncate(MOST_SPECIAL_FORMS);
     forms
 }
 
-/// The most promising special forms beside links of these `strengths`, each with its score (nats).
-fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f64, Rival)> {
+/// Whether a fit is nearly as likely as the `selected` one, or explains as much with more parameters. A body on the tool has up to ten of
+/// them, and links that are all wrong cost less, however wrong they are.
+fn is_nearly_as_good(next: &Selection, selected: &Selection) -> bool {
+    next.score < selected.score + NEARLY_AS_LIKELY || next.fit.loss < selected.fit.loss + NEARLY_NATS
+}
+
+/// The most promising special forms beside links of these `strengths`, each with its fit.
+fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Selection, Rival)> {
     let products = study.products_at(strengths);
     let problem = study.problem(&products);
     let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
@@ -73,16 +86,18 @@ fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(f6
     let mut promises = problem.promises(&base, &free);
     promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let of = |c: usize| (study.candidates[c].hypothesis, study.candidates[c].joint);
-    let mut tried: Vec<usize> = Vec::new();
+    let mut forms: Vec<Rival> = Vec::new();
     for &(promise, c) in &promises {
-        if promise > 0.0 && tried.len() < SPECIAL_FORMS_TRIED && !tried.iter().any(|&other| of(other) == of(c)) {
-            tried.push(c);
+        if promise > 0.0 && forms.len() < SPECIAL_FORMS_TRIED && !forms.contains(&of(c)) {
+            forms.push(of(c));
         }
     }
-    let fitted = tried.into_iter().filter_map(|c| {
+    // A body on the tool may be a point or have moments of inertia.
+    let tried = free.into_iter().filter(|&c| forms.contains(&of(c)));
+    let fitted = tried.filter_map(|c| {
         let with = problem.choose([&selected.set[..], &[c]].concat(), &base.fit.weights);
         let pays = with.score < base.score && problem.is_possible(c, &with.fit);
-        pays.then(|| (problem.reweighted(with).score, of(c)))
+        pays.then(|| (problem.reweighted(with), of(c)))
     });
     fitted.collect()
 }

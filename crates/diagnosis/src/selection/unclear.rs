@@ -2,7 +2,7 @@
 
 use effects::arm::Payload;
 use effects::drive::LATE;
-use effects::{Effect, Term};
+use effects::{Against, Effect, Term};
 use torque::Corrected;
 
 use crate::search::problem::Selection;
@@ -154,11 +154,11 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
     }
 }
 
-/// Whether a lag of the torques of the effect's joints explains as much as the effect. Where little accelerates, a lag of the torque of
+/// Whether the effect is a torque along the velocity of another joint, and a lag of the torques of its joints explains as much. Where little accelerates, a lag of the torque of
 /// gravity is a torque along the velocities of all joints that the gravity depends on.
 fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    if !candidate.hypothesis.spec().may_be_lag {
+    if candidate.hypothesis.spec().against != Against::OtherSpeed {
         return false;
     }
     let Selection { fit, .. } = &judged.named;

@@ -47,7 +47,7 @@ static SPEC: Spec = Spec {
     in_urdf: InUrdf::Inertials,
     experiment: Some(Experiment {
         rank: 9,
-        text: "remove the load from the tool and record the same motion: an effect that remains is not a payload",
+        text: "record the same motion without the load, or with the tool mounted if it is missing: an effect that remains is not a payload",
     }),
     ..Spec::EMPTY
 };

@@ -33,7 +33,6 @@ static SPEC: Spec = Spec {
     // The only one in the cases of `torque_scale` was wrong, and 2.3 times as large.
     least_beside_residual: Some(3.0),
     is_beyond_the_drive: true,
-    may_be_lag: true,
     against: Against::OtherSpeed,
     ..Spec::EMPTY
 };

@@ -147,8 +147,9 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         && most.abs().max(least.abs()) > (0.5 * regular.period).max(5e-4)
     {
         let text = format!(
-            "recorded velocities are {}, probably by a filter; testbed differentiates the positions instead",
-            lateness(*least, *most)
+            "recorded velocities are {}{}; testbed differentiates the positions instead",
+            lateness(*least, *most),
+            if *most > 0.0 { ", probably by a filter" } else { "" },
         );
         add(FindingKind::VelocityLate, None, text);
     }

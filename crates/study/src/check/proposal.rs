@@ -297,7 +297,7 @@ impl Best<'_> {
         if self.may_be_base {
             text += ". The base may also hang from a ceiling or a wall";
         } else if leaves_limits {
-            text += ". The positions would lie farther beyond the URDF's limits with it, so that something else may be wrong";
+            text += ". With it, positions would lie beyond the URDF's limits, or farther beyond them, so that something else may be wrong";
         } else if !is_certain && self.supporters < 2 {
             text += ". No other joint's torque shows it, so that it may have another cause";
         } else if !is_certain {
