@@ -25,9 +25,10 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     if let Some(changed) = words::changed(report) {
         blocks.push(text(changed));
     }
-    if let Some(load) = words::different_load(report) {
-        blocks.push(text(load));
-    }
+    let sentences = words::different_load(report)
+        .into_iter()
+        .chain(words::torque_lag(report));
+    blocks.extend(sentences.map(text));
     blocks.push(text(format!("**{}**", words::verdict(report))));
     blocks.extend(doubted(&report.doubts, Certainty::Certain, report));
     blocks.push(text(recordings(report)));

@@ -238,6 +238,16 @@ pub fn different_load(report: &Report) -> Option<String> {
     ))
 }
 
+/// The lag of all torques that was removed, as a sentence; `None` if there was none.
+pub fn torque_lag(report: &Report) -> Option<String> {
+    let lag = report.torque_lag?;
+    let way = if lag > 0.0 { "later" } else { "earlier" };
+    Some(format!(
+        "The torques of all joints were recorded {:.1} ms {way} than the positions; they are compared without this lag.",
+        1e3 * lag.abs()
+    ))
+}
+
 /// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so.
 pub fn verdict(report: &Report) -> String {
     // What is in the recordings from before only is no error of the model.

@@ -74,9 +74,17 @@ pub fn find_robot(robot: &str, folder: &Path) -> anyhow::Result<RobotFile> {
             known.join(", ")
         );
     }
-    let text = std::fs::read_to_string(&path).map_err(|source| arm::ArmError::Read {
+    let bytes = std::fs::read(&path).map_err(|source| arm::ArmError::Read {
         path: path.clone(),
         source,
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
+        anyhow::anyhow!(
+            "{}:{line}: the text is not UTF-8; save it as UTF-8 (iconv -f ISO-8859-1 -t UTF-8, if it is Latin-1)",
+            path.display()
+        )
     })?;
     Ok(RobotFile { path, text })
 }

@@ -36,6 +36,20 @@ fn the_page_is_self_contained_and_complete() {
     assert!(!own.contains("NaN") && !own.contains("inf "));
 }
 
+#[test]
+fn a_lag_that_was_removed_is_stated() {
+    let (mut report, traces, arm) = made_up::diagnosis(3, Plot::Rich);
+    for (lag, said) in [(0.0185, "18.5 ms later than"), (-0.004, "4.0 ms earlier than")] {
+        report.torque_lag = Some(lag);
+        for text in [
+            report::page(&report, &traces, &arm),
+            report::diagnosis_markdown(&report, &arm),
+        ] {
+            assert!(text.contains(said), "{said}");
+        }
+    }
+}
+
 /// The verb of the first sentence agrees with the errors as they are rounded in it.
 #[test]
 fn the_first_sentence_agrees_with_its_numbers() {

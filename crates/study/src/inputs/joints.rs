@@ -60,6 +60,18 @@ pub(super) fn order(
             first_ones(recording, &known)
         );
     }
+    if lacking.len() == known.len()
+        && let Some(places) = in_another_spelling(&recording.joints, &known)
+    {
+        bail!(
+            "{name}: its joints are {}, those of {} are {}, as if in another spelling; if they are the same, read the recording with \
+             this column map (--map):\n{}",
+            quoted(&recording.joints),
+            arm.name(),
+            quoted(&known),
+            map_of(recording, &known, &places)
+        );
+    }
     if lacking.len() == known.len() {
         bail!(
             "{name}: belongs to another robot: its joints are {}, those of {} are {}; give the URDF of the robot that was recorded, or a column map (--map)",
@@ -146,8 +158,32 @@ pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> Reg
     recording
 }
 
+/// The places of the joints `known` among `found`, if each is there in another spelling: with a prefix, other case or other separators.
+fn in_another_spelling(found: &[String], known: &[String]) -> Option<Vec<usize>> {
+    let plain = |name: &String| -> String {
+        let last = name.rsplit(['/', ':']).next().unwrap_or_default();
+        last.chars()
+            .filter(|c| c.is_alphanumeric())
+            .flat_map(char::to_lowercase)
+            .collect()
+    };
+    let place = |joint: &String| -> Option<usize> {
+        let same = |(_, other): &(usize, &String)| plain(other) == plain(joint);
+        let mut places = found.iter().enumerate().filter(same);
+        let (first, _) = places.next()?;
+        places.next().is_none().then_some(first)
+    };
+    known.iter().map(place).collect()
+}
+
 /// A column map of the first numbered joints, with the names `known`.
 fn first_ones(recording: &Recording, known: &[String]) -> String {
+    let count = known.len().min(recording.joints.len());
+    map_of(recording, known, &(0..count).collect::<Vec<_>>())
+}
+
+/// A column map that gives the joints at `places` the names `known`.
+fn map_of(recording: &Recording, known: &[String], places: &[usize]) -> String {
     let Some(origin) = &recording.origin else {
         return String::new();
     };
@@ -156,7 +192,7 @@ fn first_ones(recording: &Recording, known: &[String]) -> String {
     if let Some(run) = &origin.run {
         map += &format!("run = {}\n", quoted(run));
     }
-    for (joint, name) in known.iter().enumerate().take(recording.joints.len()) {
+    for (name, &joint) in known.iter().zip(places) {
         map += &format!("[joints.{}]\n", quoted(name));
         for column in origin.columns.iter().filter(|column| column.joint == joint) {
             let key = column.quantity.prefix().trim_end_matches('_');
@@ -164,4 +200,32 @@ fn first_ones(recording: &Recording, known: &[String]) -> String {
         }
     }
     map
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joints_are_recognised_in_another_spelling() {
+        let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<Vec<String>>();
+        let known = names(&["joint_1", "joint_2"]);
+        for found in [
+            ["Joint2", "Joint1"],
+            ["arm/joint2", "arm/joint1"],
+            ["JOINT-2", "joint 1"],
+        ] {
+            assert_eq!(
+                in_another_spelling(&names(&found), &known),
+                Some(vec![1, 0]),
+                "{found:?}"
+            );
+        }
+        // Which of two is meant is unknown, and not all are there.
+        assert_eq!(
+            in_another_spelling(&names(&["left/joint1", "right/joint1", "joint2"]), &known),
+            None
+        );
+        assert_eq!(in_another_spelling(&names(&["Joint1"]), &known), None);
+    }
 }
