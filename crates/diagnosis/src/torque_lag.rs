@@ -4,7 +4,7 @@
 //! It resembles viscous friction and drives that turn with two joints.
 
 use effects::Term;
-use effects::drive::{ActuationDelay, LATE};
+use effects::drive::{ActuationDelay, LATE, UNIT_LAG};
 use nalgebra::{DMatrix, DVector};
 use recording::RegularRecording;
 
@@ -13,9 +13,6 @@ use crate::data::statistics::NORMAL_95;
 use crate::search::problem::Selection;
 use crate::selection::FinalFit;
 use crate::thresholds::{LEAST_LAG, LEAST_LAG_NATS, LEAST_LAGGING, MOST_OF_LAG, SURE_OF_LAG};
-
-/// The lag (s) to which the columns belong. They are nearly proportional to it.
-const UNIT_LAG: f64 = 0.005;
 
 /// A lag that the torques of all joints have in common.
 #[derive(Clone, Copy, Debug)]

@@ -192,8 +192,13 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
     };
     // The margin of a link over the best other link or effect (nats), and the links that explain nearly as much in its place, the
-    // best first, then such effects.
-    let instead = |link: usize| -> (f64, Vec<Confusable>) {
+    // best first, then such effects. Torque constants that deviate a little are more ordinary than one wrong link among right ones: if
+    // they explain as much, there is none.
+    let instead = |link: usize| -> Option<(f64, Vec<Confusable>)> {
+        let constants = study.in_torque_constants(&judged.named, link);
+        if constants < LINK_OVER_CONSTANTS {
+            return None;
+        }
         let [score, loss] = study.evidence_of_link(&judged.named, link);
         let mut others = study.in_other_links(&judged.named, link);
         others.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
@@ -201,18 +206,14 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let lost = others.iter().map(|(_, lost)| lost[0]);
         let margin = lost
             .chain(forms.iter().map(|(beyond, _)| *beyond))
-            .fold(score, f64::min);
+            .fold(score.min(constants), f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
             effect: InertialParameters.spec().name,
             joint: Some(data.arm.joints()[other].name.clone()),
         });
-        (
-            margin,
-            rivals
-                .chain(forms.into_iter().map(|(_, form)| confusable(form)))
-                .collect(),
-        )
+        let effects = forms.into_iter().map(|(_, form)| confusable(form));
+        Some((margin, rivals.chain(effects).collect()))
     };
     // The alternatives of links that are all wrong: effects beside links that are less wrong.
     let everywhere = || -> Vec<Confusable> {
@@ -235,7 +236,8 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         if !(0..dof).any(stands_out) {
             return;
         }
-        let (margin, confusable_with) = joint.map_or_else(|| (evidence, everywhere()), instead);
+        let found = joint.map_or_else(|| Some((evidence, everywhere())), instead);
+        let Some((margin, confusable_with)) = found else { return };
         list.findings.push(Finding {
             joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
             parameters,
@@ -251,12 +253,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         .members
         .iter()
         .any(|member| study.candidates[member.candidate].hypothesis.is(&Payload));
-    // Torque constants that deviate a little are more ordinary than one wrong link among right ones.
-    let is_wrong = |link: usize| study.in_torque_constants(&judged.named, link) >= LINK_OVER_CONSTANTS;
-    for &link in apart
-        .iter()
-        .filter(|&&link| !(has_payload && link + 1 == dof) && is_wrong(link))
-    {
+    for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
         let name = &data.arm.joints()[link].name;
         let parameters = list
             .links

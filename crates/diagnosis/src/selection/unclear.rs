@@ -1,7 +1,7 @@
 //! Effects that the final fit contradicts, or whose size or onset it leaves open.
 
 use effects::arm::Payload;
-use effects::drive::LATE;
+use effects::drive::{LATE, UNIT_LAG};
 use effects::{Against, Effect, Term};
 use torque::Corrected;
 
@@ -13,9 +13,6 @@ use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
 use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
 use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
-
-/// The lag (s) that stands for every short one: its column is nearly proportional to it.
-const LAG: f64 = 0.005;
 
 /// Why an effect is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,7 +164,7 @@ fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool 
         selected.filter(|&column| keeps(column)).collect()
     };
     let joints = (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0);
-    let lags = joints.map(|joint| Term::on(&LATE, joint).sized([LAG])).collect();
+    let lags = joints.map(|joint| Term::on(&LATE, joint).sized([UNIT_LAG])).collect();
     let with = study.fit_with(&columns(&|_| true), Vec::new(), &fit.weights);
     let lagging = study.fit_with(
         &columns(&|column| !candidate.columns.contains(&column)),

@@ -48,6 +48,9 @@ pub static LATE: Law = Law {
     ..Law::PLAIN
 };
 
+/// A lag (s) whose column stands for those of other short lags, which are nearly proportional to it.
+pub const UNIT_LAG: f64 = 0.005;
+
 /// The longest delay of a drive (s). A position loop with a longer one is unstable. Source: first diagnosis.
 const LONGEST_DELAY: f64 = 0.03;
 /// The longest delay that is named (s); a longer one is tried, so that it does not seem to be this long. Source: four delays in 320 cases of
