@@ -5,7 +5,10 @@
 //! ticks by the most likely strictly increasing sequence where rounding is ambiguous. If stamps scatter over most of
 //! the period, no stamp determines a phase, and the ticks follow from the order of the rows alone (`track`).
 
+mod sampling;
 mod track;
+
+pub use sampling::is_at_stamps;
 
 /// A gap of more than this many periods may be followed by another phase.
 pub const PHASE_GAP: f64 = 6.5;
@@ -100,7 +103,8 @@ fn by_phase(time: &[f64], breaks: &[usize], period: f64, near: f64) -> Clock {
     }
     let rows = time.len() as f64;
     clock.jitter.0 = (clock.jitter.0 / rows).sqrt();
-    clock.regular &= clock.jitter.0 < NO_CLOCK * period;
+    // Steps of whole periods have a clock, even if many stamps are rounded to the next or the previous tick.
+    clock.regular &= near < STEADY || clock.jitter.0 < NO_CLOCK * period;
     fit(&mut clock, time);
     clock
 }

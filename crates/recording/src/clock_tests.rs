@@ -212,3 +212,21 @@ fn stamps_that_scatter_over_almost_a_period_do_not_bend_the_clock() {
         }
     }
 }
+
+/// Samples at 1 kHz whose stamps scatter by 0.3 ms and are rounded to whole milliseconds: one row in seven has the stamp of the row before.
+#[test]
+fn coarse_stamps_have_a_clock() {
+    let scatter = |row: usize| 0.3e-3 * (1.7 * row as f64).sin() * (0.3 * row as f64 * row as f64).cos();
+    let mut time: Vec<f64> = (0..5000)
+        .map(|row| ((1e-3 * row as f64 + 0.25e-3 + scatter(row)) * 1e3).round() / 1e3)
+        .collect();
+    for row in 1..time.len() {
+        time[row] = time[row].max(time[row - 1].next_up());
+    }
+    let equal = time.windows(2).filter(|pair| pair[1] - pair[0] < 1e-9).count();
+    assert!(equal > time.len() / 20, "{equal}");
+    let clock = find(&time, &[]);
+    assert!(clock.regular && (clock.period - 1e-3).abs() < 1e-9, "{}", clock.period);
+    let wrong = (0..time.len()).filter(|&row| clock.ticks[row] != row as i64).count();
+    assert_eq!(wrong, 0);
+}

@@ -10,8 +10,8 @@ pub fn lagrange(nodes: &[(f64, f64)], at: f64) -> f64 {
     weighted(nodes, at).0
 }
 
-/// The value, and the sum of the absolute weights of the nodes.
-fn weighted(nodes: &[(f64, f64)], at: f64) -> (f64, f64) {
+/// The value of that polynomial, and the sum of the absolute weights of the nodes.
+pub fn weighted(nodes: &[(f64, f64)], at: f64) -> (f64, f64) {
     let (mut sum, mut weights) = (0.0, 0.0);
     for (i, (place, value)) in nodes.iter().enumerate() {
         let mut weight = 1.0;

@@ -149,6 +149,7 @@ impl Recording {
             return Err(RecordingError::Period { period });
         }
         let mut warnings = Vec::new();
+        let clock = self.unless_sampled_at_stamps(clock, &mut warnings);
         let stretches = self.stretches(&clock, &mut warnings);
         let mut segments = Vec::new();
         let mut ticks = 0;
@@ -204,6 +205,19 @@ impl Recording {
         Ok((regular, warnings))
     }
 
+    /// The clock, which is not regular if the rows were clearly sampled at the times of stamps that deviate from it.
+    fn unless_sampled_at_stamps(&self, mut clock: Clock, warnings: &mut Vec<Warning>) -> Clock {
+        let (rms, period) = (clock.jitter.0, clock.period);
+        let share = rms / period;
+        if !clock.regular {
+            warnings.push(Warning::NoRegularClock { share, period });
+        } else if share > QUIET && clock::is_at_stamps(&self.time, &self.q, &clock) {
+            clock.regular = false;
+            warnings.push(Warning::UnevenSampling { share, period });
+        }
+        clock
+    }
+
     /// The rows between long gaps.
     fn stretches(&self, clock: &Clock, warnings: &mut Vec<Warning>) -> Vec<Stretch> {
         let mut stretches: Vec<Stretch> = Vec::new();
@@ -250,11 +264,6 @@ impl Recording {
     fn warn(&self, clock: &Clock, segments: &[Segment], present: &[bool], warnings: &mut Vec<Warning>) {
         let (rms, max, row) = clock.jitter;
         if !clock.regular {
-            let share = rms / clock.period;
-            warnings.push(Warning::NoRegularClock {
-                share,
-                period: clock.period,
-            });
             return;
         }
         if rms > QUIET * clock.period {

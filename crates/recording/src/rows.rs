@@ -16,8 +16,9 @@ use crate::{Recording, RecordingError, Warning};
 const RESTART_SHARE: f64 = 0.01;
 /// The smallest number of rows of a run in a file with several.
 const RUN_ROWS: usize = 50;
-/// The largest share of rows that have the stamp of the previous row and other values.
-const DIFFERING_SHARE: f64 = 0.01;
+/// The largest share of rows that have the stamp of the previous row and other values. With coarse stamps, it may be large; with rows of
+/// two sources in turn, it is one half.
+const DIFFERING_SHARE: f64 = 0.4;
 
 /// The largest plausible value of any quantity (SI).
 const LARGEST: f64 = 1e9;
@@ -46,13 +47,14 @@ pub struct Rows<'a> {
     runs: usize,
     warnings: Vec<Warning>,
     stamps: Stamps,
-    /// The stamp of the previous row in the file (s).
+    /// The stamp of the previous row in the file (s), and the time that it got (s).
     stamp: f64,
+    placed: f64,
     /// The first stamp of this run in the file (s), and the offset that is added to its stamps (s).
     first: f64,
     shift: f64,
-    /// Duplicated rows: their number, the number of those that differ, and the places of the first one and of the
-    /// first one that differs.
+    /// Rows with the stamp of the row before: the number of those with its values, too, that of the others, and the place of the first
+    /// of each.
     duplicates: usize,
     differing: usize,
     duplicate_place: Place,
@@ -83,6 +85,7 @@ impl<'a> Rows<'a> {
             warnings: Vec::new(),
             stamps: Stamps::default(),
             stamp: f64::NAN,
+            placed: f64::NEG_INFINITY,
             first: f64::NAN,
             shift: 0.0,
             duplicates: 0,
@@ -113,25 +116,25 @@ impl<'a> Rows<'a> {
             begins = true;
             self.first = stamp;
         } else if self.in_run > 0 && stamp <= self.stamp {
-            if stamp == self.stamp {
-                if !self.is_left_out {
-                    self.duplicate(row);
-                }
+            if stamp < self.stamp {
+                self.restart(row, stamp)?;
+                begins = true;
+            } else if !self.is_left_out && self.is_duplicate(row) {
                 return Ok(());
             }
-            self.restart(row, stamp)?;
-            begins = true;
         } else if self.in_run == 0 {
             self.first = stamp;
         }
         self.in_run = if begins { 1 } else { self.in_run + 1 };
         self.stamp = stamp;
-        self.is_left_out = !self.values.wants(stamp + self.shift, begins);
+        // Rows with one stamp keep their order, and the clock finds their ticks.
+        self.placed = (stamp + self.shift).max(self.placed.next_up());
+        self.is_left_out = !self.values.wants(self.placed, begins);
         if self.is_left_out {
             return Ok(());
         }
         self.row.clear();
-        self.row.push(stamp + self.shift);
+        self.row.push(self.placed);
         for index in 0..self.plan.channels.len() {
             let value = self.channel_value(row, index)?;
             self.row.push(value);
@@ -260,12 +263,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Handles a row with the stamp of the previous row.
-    fn duplicate(&mut self, row: &Row<'_>) {
-        self.duplicates += 1;
-        if self.duplicates == 1 {
-            self.duplicate_place = row.place;
-        }
+    /// Counts a row with the stamp of the previous row. Whether its values are the same, too.
+    fn is_duplicate(&mut self, row: &Row<'_>) -> bool {
         let channels = self.plan.channels.iter().zip(&self.states).map(|(channel, state)| {
             let value = row.cell(channel.index).number();
             let value = value.filter(|_| *state != State::LeftOut);
@@ -274,12 +273,17 @@ impl<'a> Rows<'a> {
         let others = self.plan.others.iter().map(|(index, _)| row.cell(*index).number());
         let values = channels.chain(others.map(|value| value.unwrap_or(f64::NAN)));
         let differs = |(value, before): (f64, &f64)| value.to_bits() != before.to_bits();
-        if values.zip(&self.before[1..]).any(differs) {
-            self.differing += 1;
-            if self.differing == 1 {
-                self.differing_place = row.place;
-            }
+        let differs = values.zip(&self.before[1..]).any(differs);
+        let (count, place) = if differs {
+            (&mut self.differing, &mut self.differing_place)
+        } else {
+            (&mut self.duplicates, &mut self.duplicate_place)
+        };
+        *count += 1;
+        if *count == 1 {
+            *place = row.place;
         }
+        !differs
     }
 
     /// Handles time that decreases: a further run if it starts at the time at which this run started, otherwise an
@@ -335,7 +339,8 @@ impl<'a> Rows<'a> {
                 path,
                 place: self.differing_place,
                 reason: format!(
-                    "{} rows have the time of the row before but other values; log the time with finer digits",
+                    "{} of {rows} rows have the time of the row before but other values; log the time with finer digits, and the \
+                     rows of one source only",
                     self.differing
                 ),
             });
@@ -345,7 +350,12 @@ impl<'a> Rows<'a> {
             self.warnings.push(Warning::Duplicates {
                 rows: self.duplicates,
                 line: self.duplicate_place,
-                differ: self.differing > 0,
+            });
+        }
+        if self.differing > 0 {
+            self.warnings.push(Warning::EqualStamps {
+                rows: self.differing,
+                line: self.differing_place,
             });
         }
         if let (Some((_, column)), 2..) = (&self.plan.time.run, self.runs) {

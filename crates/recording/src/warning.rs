@@ -18,14 +18,19 @@ pub enum Warning {
         /// The line or row.
         line: Place,
     },
-    /// Rows that equal the previous one (or have its time stamp) were omitted.
+    /// Rows that equal the previous one were omitted.
     Duplicates {
         /// Their number.
         rows: usize,
         /// The line or row of the first.
         line: Place,
-        /// Whether some have the stamp of the previous row and other values.
-        differ: bool,
+    },
+    /// Rows have the time stamp of the previous one and other values; they were placed after it.
+    EqualStamps {
+        /// Their number.
+        rows: usize,
+        /// The line or row of the first.
+        line: Place,
     },
     /// The file has more rows than are kept: each is the mean of several.
     Thinned {
@@ -153,6 +158,13 @@ pub enum Warning {
         /// The period chosen (s).
         period: f64,
     },
+    /// The rows were sampled at the times of their stamps, which are not regular; they were resampled by interpolation.
+    UnevenSampling {
+        /// Root mean square distance of the stamps from the best clock, as a share of its period.
+        share: f64,
+        /// The period of the resampled rows (s).
+        period: f64,
+    },
     /// Single rows are missing; their values were interpolated.
     LostRows {
         /// Their number.
@@ -188,14 +200,17 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::CutFile { line } => write!(f, "{line}: the file is cut in the middle of this row; it was left out"),
-            Self::Duplicates { rows, line, differ } => {
-                let what = if *differ {
-                    "with the time of the row before"
-                } else {
-                    "equal to the row before"
-                };
+            Self::Duplicates { rows, line } => {
                 let verb = if *rows == 1 { "row was" } else { "rows were" };
-                write!(f, "{line}: {rows} {verb} left out, {what}")
+                write!(f, "{line}: {rows} {verb} left out, equal to the row before")
+            }
+            Self::EqualStamps { rows, line } => {
+                let what = if *rows == 1 {
+                    "row has the time of the row before but other values; it was"
+                } else {
+                    "rows have the time of the row before but other values; they were"
+                };
+                write!(f, "{line}: {rows} {what} placed after it")
             }
             Self::Thinned { rows, kept, span } => write!(
                 f,
@@ -306,6 +321,13 @@ impl fmt::Display for Warning {
                 f,
                 "no regular clock fits the time stamps (they deviate by {:.0} % of the period from {:.2} Hz); resampled by \
                  interpolation, which makes derivatives less accurate: record with the drive's own clock",
+                100.0 * share,
+                1.0 / period
+            ),
+            Self::UnevenSampling { share, period } => write!(
+                f,
+                "the rows were sampled at the times of their stamps, which deviate by {:.0} % of the period from {:.2} Hz: the \
+                 positions are smooth along these times only; resampled by interpolation, which makes derivatives less accurate",
                 100.0 * share,
                 1.0 / period
             ),

@@ -205,13 +205,26 @@ fn a_duplicated_row_is_left_out() {
     let expected = Warning::Duplicates {
         rows: 1,
         line: Place::Line(4),
-        differ: false,
     };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
-    let coarse = refusal("t,q_a,tau_a\n0,1,2\n1,1,2\n1,2,2\n2,1,2\n2,2,2\n3,1,2\n3,2,2\n");
+}
+
+#[test]
+fn rows_with_one_stamp_keep_their_order() {
+    let read = read("t,q_a,tau_a\n0,1,2\n1,1,2\n1,2,2\n2,1,2\n").expect("it reads");
+    assert_eq!((read.len(), &read.q[0][..]), (4, &[1.0, 1.0, 2.0, 1.0][..]));
+    assert!(read.time.is_sorted_by(|a, b| a < b), "{:?}", read.time);
+    let expected = Warning::EqualStamps {
+        rows: 1,
+        line: Place::Line(4),
+    };
+    assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
+    // The rows of two sources in turn are no recording.
+    let pair = |k: usize| format!("{k},1,2\n{k},2,2\n");
+    let text = refusal(&("t,q_a,tau_a\n".to_owned() + &(0..10).map(pair).collect::<String>()));
     assert!(
-        coarse.contains("r.csv:4: 3 rows have the time of the row before"),
-        "{coarse}"
+        text.contains("r.csv:3: 10 of 20 rows have the time of the row before"),
+        "{text}"
     );
 }
 
@@ -322,7 +335,7 @@ fn a_joint_without_any_torque_is_left_out() {
     let twice =
         "t,q_a,q_hand,qd_a,qd_hand,tau_a,tau_hand\n0,1,2,,0,5,nan\n1,1,2,3,0,5,nan\n1,1,2,3,0,5,nan\n2,1,2,3,0,5,nan\n";
     let twice = self::read(twice).expect("it reads");
-    let same = |warning: &Warning| matches!(warning, Warning::Duplicates { differ: false, .. });
+    let same = |warning: &Warning| matches!(warning, Warning::Duplicates { .. });
     assert!(twice.warnings.iter().any(same), "{:?}", twice.warnings);
     // With a torque here and there, the rows without one are the mistake.
     let text = refusal("t,q_a,q_hand,tau_a,tau_hand\n0,1,2,5,nan\n1,1,2,5,3\n2,1,2,5,NaN\n");
