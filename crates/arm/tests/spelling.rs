@@ -178,6 +178,14 @@ fn a_moving_link_without_mass_is_noted() {
         note,
         "link \"lower\" (line 9), which j2 moves, has no mass and no inertia; add its <inertial>, unless it stands for no body"
     );
+    let mass = line
+        .split("<mass")
+        .nth(1)
+        .and_then(|rest| rest.split("/>").next())
+        .expect("it is there");
+    let note = bare(line, &line.replace(mass, " value=\"0\""));
+    let rest = "has an inertia but no mass, which no body has; correct its <mass>, unless it stands for a rotor";
+    assert_eq!(note, format!("link \"lower\" (line 9), which j2 moves, {rest}"));
     // What a fixed joint attaches to it is a part of it.
     let moved = line.replace("\"lower\"", "\"flange\"");
     let text = PENDULUM

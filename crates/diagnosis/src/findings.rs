@@ -7,6 +7,7 @@ pub mod found;
 pub mod inertials;
 pub mod locate;
 pub mod observability;
+mod other_friction;
 pub mod sentences;
 pub mod traces;
 pub mod transients;

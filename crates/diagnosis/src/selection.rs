@@ -30,6 +30,7 @@ pub mod special_forms;
 pub mod torque_constants;
 pub mod unclear;
 pub mod unmounted;
+mod variation;
 pub mod without_moment;
 
 /// The final fit: the named effects, their uncertainty, and the residuals.

@@ -4,7 +4,7 @@
 //! It resembles viscous friction and drives that turn with two joints.
 
 use effects::Term;
-use effects::drive::{ActuationDelay, LATE, UNIT_LAG};
+use effects::drive::{ActuationDelay, LATE, LATE_SIGN, UNIT_LAG};
 use nalgebra::{DMatrix, DVector};
 use recording::RegularRecording;
 
@@ -12,7 +12,7 @@ use crate::data::input::Input;
 use crate::data::statistics::NORMAL_95;
 use crate::search::problem::Selection;
 use crate::selection::FinalFit;
-use crate::thresholds::{LEAST_LAG, LEAST_LAG_NATS, LEAST_LAGGING, MOST_OF_LAG, SURE_OF_LAG};
+use crate::thresholds::{LEAST_LAG, LEAST_LAG_NATS, LEAST_LAGGING, MOST_OF_LAG, SURE_OF_LAG, TURNS_LATE};
 
 /// A lag that the torques of all joints have in common.
 #[derive(Clone, Copy, Debug)]
@@ -41,12 +41,17 @@ impl TorqueLag {
             .collect();
         let joints = (0..study.data.motions.dof)
             .filter(|&joint| study.data.scales.moves(joint) && study.data.scales.torque[joint] > 0.0);
-        let terms: Vec<Term> = joints.map(|joint| Term::on(&LATE, joint).sized([UNIT_LAG])).collect();
-        let count = terms.len();
+        let joints: Vec<usize> = joints.collect();
+        let count = joints.len();
         if count < LEAST_LAGGING {
             return None;
         }
-        let lagging = study.fit_with(&columns, terms, &fit.weights);
+        // Dry friction turns round over a distance, and so late, but gravity and inertia do not.
+        let turns = joints
+            .iter()
+            .flat_map(|&joint| TURNS_LATE.map(|delay| Term::on(&LATE_SIGN, joint).sized([delay])));
+        let lags = joints.iter().map(|&joint| Term::on(&LATE, joint).sized([UNIT_LAG]));
+        let lagging = study.fit_with(&columns, turns.chain(lags).collect(), &fit.weights);
         // The column is the torque less the earlier torque, which a late torque lacks.
         let lags = -DVector::from_column_slice(&lagging.coefficients[lagging.coefficients.len() - count..]);
         let covariance = lagging.information_of_last(count).try_inverse()?;

@@ -160,6 +160,25 @@ fn channels_without_torque_are_omitted() {
             regular(&recording)
         })
         .collect();
+    let rounded: Vec<_> = [16.0, 16.0, 10.0]
+        .into_iter()
+        .enumerate()
+        .map(|(variant, seconds)| {
+            let mut recording = recorded(&robot, variant, seconds, &|motion, tau| baseline_friction(motion, tau));
+            // Two steps up and down.
+            let largest = recording.tau[2].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            for tau in &mut recording.tau[2] {
+                *tau = (2.0 * *tau / largest).round() * 0.5 * largest;
+            }
+            regular(&recording)
+        })
+        .collect();
+    let coarse = diagnose(&trio(), &inputs(&rounded), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let remarks = coarse.remarks.join("\n");
+    assert!(
+        remarks.contains("elbow: the torque channel shows only 5 different values"),
+        "{remarks}"
+    );
     let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
     let remarks = diagnosis.remarks.join("\n");

@@ -85,7 +85,7 @@ pub mod drive {
 
     pub use backlash::Backlash;
     pub use coupling::{FARTHEST_COUPLED, TransmissionCoupling};
-    pub use delay::{ActuationDelay, LATE, UNIT_LAG};
+    pub use delay::{ActuationDelay, LATE, LATE_SIGN, UNIT_LAG};
     pub use elasticity::JointElasticity;
     pub use ripple::{TorqueRipple, columns as ripple_columns};
     pub use rotor_inertia::RotorInertia;

@@ -8,7 +8,7 @@ use effects::Quantity;
 
 use crate::block::{Block, table, text};
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, markdown, next_words, numbers, terminal, words};
+use crate::{alternatives, doubts, markdown, next_words, numbers, sizes, terminal, words};
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
 pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
@@ -96,9 +96,7 @@ fn findings(report: &Report) -> Vec<Block> {
         vec![
             place(finding.joint.as_deref()),
             words::effect(finding),
-            words::main_parameter(finding).map_or("–".into(), |(name, parameter)| {
-                numbers::with_interval(name, parameter)
-            }),
+            sizes::cell(finding, ", "),
             alternatives::text(finding),
             words::share(finding).map_or_else(|| "–".into(), numbers::share),
             numbers::probability(finding.probability),

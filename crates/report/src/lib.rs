@@ -27,6 +27,7 @@ mod page;
 mod regions;
 pub mod score;
 mod shell;
+mod sizes;
 pub mod terminal;
 pub mod words;
 

@@ -29,7 +29,7 @@ pub struct Wording {
     /// The experiment that distinguishes it from similar effects.
     distinguished_by: &'static str,
     /// The parameters that measure its size, the best first.
-    main: &'static [&'static str],
+    pub main: &'static [&'static str],
 }
 
 /// The title of a finding's effect. Friction that only the motor's current shows is between motor and torque sensor.
@@ -116,16 +116,6 @@ pub fn experiments(finding: &Finding) -> String {
         }
     }
     list.join("; ")
-}
-
-/// The parameter that measures the size of a finding, with its name.
-pub fn main_parameter(finding: &Finding) -> Option<(&'static str, &Parameter)> {
-    let main = wording(finding.effect).main;
-    let named = main
-        .iter()
-        .find_map(|name| finding.parameters.get_key_value(name).filter(|(_, p)| p.value != 0.0));
-    let found = named.or_else(|| finding.parameters.iter().next());
-    found.map(|(name, parameter)| (*name, parameter))
 }
 
 /// A parameter's name in words.

@@ -323,7 +323,10 @@ fn prepare(
         let weight = match finding.kind {
             // The diagnosis differentiates the positions itself.
             FindingKind::VelocityLate | FindingKind::VelocityUnrelated => continue,
-            FindingKind::Saturation | FindingKind::JointAtRest | FindingKind::CoarseEncoder => "note",
+            FindingKind::Saturation
+            | FindingKind::JointAtRest
+            | FindingKind::CoarseEncoder
+            | FindingKind::CoarseTorque => "note",
             _ => "warning",
         };
         notes.add(

@@ -132,18 +132,17 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses an arm without any inertia, and warns of each moving link without any where others have some. Forward dynamics needs
+    /// Refuses an arm without any inertia, and warns of each moving link without mass where others have some. Forward dynamics needs
     /// [`Arm::massless_joint`] to be `None`.
     pub(super) fn check_masses(&self, arm: &mut Arm) -> Result<(), ArmError> {
-        let is_bare = |joint: &&Joint| joint.inertia == Inertia::zero();
-        let bare: Vec<&Joint> = arm.joints.iter().filter(is_bare).collect();
-        if bare.len() == arm.joints.len() {
+        if arm.joints.iter().all(|joint| joint.inertia == Inertia::zero()) {
             return Err(self.robot_error(
                 "has no moving link with a mass or an inertia (<inertial>)".into(),
                 "dynamics need masses and inertias: export them from the CAD model",
             ));
         }
-        let notes: Vec<String> = bare.iter().map(|joint| self.massless(joint)).collect();
+        let massless = arm.joints.iter().filter(|joint| joint.inertia.mass == 0.0);
+        let notes: Vec<String> = massless.map(|joint| self.massless(joint)).collect();
         arm.warnings.extend(notes);
         Ok(())
     }
@@ -152,10 +151,11 @@ impl<'a> Reader<'a> {
     fn massless(&self, joint: &Joint) -> String {
         let name = &joint.link_name;
         let line = line_of(self.text, "link", name);
-        format!(
-            "link \"{name}\" (line {line}), which {} moves, has no mass and no inertia; add its <inertial>, unless it stands for \
-             no body",
-            joint.name
-        )
+        let rest = if joint.inertia == Inertia::zero() {
+            "no mass and no inertia; add its <inertial>, unless it stands for no body"
+        } else {
+            "an inertia but no mass, which no body has; correct its <mass>, unless it stands for a rotor"
+        };
+        format!("link \"{name}\" (line {line}), which {} moves, has {rest}", joint.name)
     }
 }

@@ -11,8 +11,8 @@ use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{mean_square, quantile_of_sorted};
 use crate::thresholds::{
-    CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_RIDGE, CHANNEL_STEP, EXPLAINS_THE_LIMITED,
-    FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
+    CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_RIDGE, CHANNEL_STEP, COARSE_CHANNEL,
+    COARSE_PART, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
 };
 
 /// Why a channel holds no torque.
@@ -22,6 +22,8 @@ pub enum Why {
     Dead,
     /// It shows one value in this part of the samples in motion.
     Idle(f64),
+    /// It shows only this number of values in nearly all samples in motion.
+    Coarse(usize),
     /// Its root mean square is this multiple of the model's.
     FarTooSmall(f64),
     /// Neither the model nor friction, position, weight or masses of any size explain more than this part of its power.
@@ -38,6 +40,9 @@ impl Why {
             Self::Idle(part) => format!(
                 "the torque channel shows one and the same value in {:.0} % of the samples in which the joint moves; it is not a measured torque",
                 100.0 * part
+            ),
+            Self::Coarse(values) => format!(
+                "the torque channel shows only {values} different values in nearly all samples in which the joint moves; its steps are too coarse for a diagnosis: record it with finer digits"
             ),
             Self::FarTooSmall(part) => format!(
                 "the torque channel is {part:.4} times what the model needs to hold and move the joint; it is not a torque in SI units (is it a current, or a percentage?)"
@@ -67,9 +72,7 @@ pub fn without_torque(
                 Some(Why::Dead)
             } else {
                 let of_another_kind = || of_another_kind(motions, rigid, scales, joint);
-                idle(inputs, joint)
-                    .map(Why::Idle)
-                    .or_else(|| by_model.then(of_another_kind).flatten())
+                idle_or_coarse(inputs, joint).or_else(|| by_model.then(of_another_kind).flatten())
             };
             Some((joint, why?))
         })
@@ -80,8 +83,8 @@ pub fn without_torque(
     list.into_iter().filter(|one| !stays(one)).collect()
 }
 
-/// The part of the samples in motion with the most frequent value, if that is most of them.
-fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
+/// Whether most samples in motion have one value, or nearly all have few.
+fn idle_or_coarse(inputs: &[Input<'_>], joint: usize) -> Option<Why> {
     let speed = |input: &Input<'_>, tick: usize| {
         let q = &input.recording.q[joint];
         (q[tick + CHANNEL_STEP] - q[tick - CHANNEL_STEP]).abs() / input.recording.period
@@ -101,9 +104,17 @@ fn idle(inputs: &[Input<'_>], joint: usize) -> Option<f64> {
             all += 1;
         }
     }
-    let commonest = counts.values().copied().max().unwrap_or(0);
-    let part = commonest as f64 / f64::from(u32::try_from(all).unwrap_or(u32::MAX)).max(1.0);
-    (all >= LEAST_CHANNEL_ROWS && part > IDLE_CHANNEL).then_some(part)
+    if all < LEAST_CHANNEL_ROWS {
+        return None;
+    }
+    let mut counts: Vec<usize> = counts.into_values().collect();
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    let part = |values: usize| counts.iter().take(values).sum::<usize>() as f64 / all as f64;
+    if part(1) > IDLE_CHANNEL {
+        return Some(Why::Idle(part(1)));
+    }
+    let values = (1..=counts.len()).find(|&values| part(values) > COARSE_PART)?;
+    (values <= COARSE_CHANNEL).then_some(Why::Coarse(values))
 }
 
 /// The moving rows of a joint in the training recordings.

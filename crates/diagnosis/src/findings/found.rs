@@ -7,6 +7,7 @@ use effects::arm::{InertialParameters, Payload};
 use effects::laws::ACCELERATION;
 
 use crate::data::Data;
+use crate::findings::other_friction::widen;
 use crate::report::{Change, Confusable, Finding, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
@@ -25,7 +26,10 @@ pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
         .iter()
         .flat_map(|member| {
             let standing = standing(&last.study, &problem, &last.judged.named, member.candidate);
-            let list = finding(last, &problem, member, &standing);
+            let mut list = finding(last, &problem, member, &standing);
+            if let Some(first) = list.first_mut() {
+                widen(first, last, member, &standing);
+            }
             list.into_iter()
                 .map(|finding| (finding, Some(member.candidate)))
                 .collect::<Vec<_>>()

@@ -195,7 +195,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
     // best first, then such effects. Torque constants that deviate a little are more ordinary than one wrong link among right ones: if
     // they explain as much, there is none.
     let instead = |link: usize| -> Option<(f64, Vec<Confusable>)> {
-        let constants = study.in_torque_constants(&judged.named, link);
+        let constants = study.in_torque_constants(&judged.named, Some(link));
         if constants < LINK_OVER_CONSTANTS {
             return None;
         }
@@ -215,12 +215,14 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let effects = forms.into_iter().map(|(_, form)| confusable(form));
         Some((margin, rivals.chain(effects).collect()))
     };
-    // The alternatives of links that are all wrong: effects beside links that are less wrong.
-    let everywhere = || -> Vec<Confusable> {
-        special_forms(study, &judged.named)
-            .into_iter()
-            .map(confusable)
-            .collect()
+    // The same for links that are all wrong; their alternatives are effects beside links that are less wrong.
+    let everywhere = || -> Option<(f64, Vec<Confusable>)> {
+        let constants = study.in_torque_constants(&judged.named, None);
+        if constants < LINK_OVER_CONSTANTS {
+            return None;
+        }
+        let forms = special_forms(study, &judged.named);
+        Some((evidence.min(constants), forms.into_iter().map(confusable).collect()))
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside unmodelled structure on a joint, the changes may be a part of that structure.
@@ -236,8 +238,9 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         if !(0..dof).any(stands_out) {
             return;
         }
-        let found = joint.map_or_else(|| Some((evidence, everywhere())), instead);
-        let Some((margin, confusable_with)) = found else { return };
+        let Some((margin, confusable_with)) = joint.map_or_else(everywhere, instead) else {
+            return;
+        };
         list.findings.push(Finding {
             joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
             parameters,

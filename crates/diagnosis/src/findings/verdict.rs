@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use arm::Arm;
-use effects::Regressor;
+use effects::{Quantity, Regressor};
 
 use crate::data::statistics::rms;
 use crate::findings::sentences;
@@ -11,7 +11,9 @@ use crate::findings::transients::Transients;
 use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, poor, structured};
-use crate::thresholds::{LEAST_MOTION, PARTLY, REMEMBERS, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING};
+use crate::thresholds::{
+    LEAST_MOTION, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
+};
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
 /// `fit`; `located` are the places of the nominal residual.
@@ -185,6 +187,19 @@ pub fn not_enough(last: &FinalFit) -> Vec<String> {
             .sum()
     };
     let longest = (0..data.motions.dof).map(seconds).fold(0.0, f64::max);
+    // A joint slower than the noise of its positions counts as resting.
+    let hidden = (0..data.motions.dof)
+        .filter(|&joint| data.scales.rest[joint] > NOISY_REST * REST * data.scales.speed[joint])
+        .max_by(|&a, &b| data.scales.speed[a].total_cmp(&data.scales.speed[b]));
+    let hidden = hidden.map_or_else(String::new, |joint| {
+        let joint_of_arm = &data.arm.joints()[joint];
+        format!(
+            ". Motion of {} below {:.2} {} does not count, because the noise or the steps of the positions hide it: move faster, or record finer positions",
+            joint_of_arm.name,
+            data.scales.rest[joint],
+            Quantity::Speed.unit(joint_of_arm.kind)
+        )
+    });
     let all: f64 = (table.rows.iter().zip(&data.seconds).zip(&data.fitted))
         .filter(|(_, fitted)| **fitted)
         .map(|((rows, seconds), _)| rows.len() as f64 * seconds)
@@ -195,10 +210,10 @@ pub fn not_enough(last: &FinalFit) -> Vec<String> {
             "the training recordings are {all:.1} s long without the filter's ends; a diagnosis needs at least {LEAST_MOTION:.0} s of motion and several reversals of each joint"
         ));
     } else if products.count.iter().all(|&count| count == 0.0) {
-        reasons.push("no joint moves in the training recordings".to_owned());
+        reasons.push(format!("no joint moves in the training recordings{hidden}"));
     } else if longest < LEAST_MOTION {
         reasons.push(format!(
-            "the training recordings contain {longest:.1} s of motion; a diagnosis needs at least {LEAST_MOTION:.0} s and several reversals of each joint"
+            "the training recordings contain {longest:.1} s of motion; a diagnosis needs at least {LEAST_MOTION:.0} s and several reversals of each joint{hidden}"
         ));
     }
     reasons

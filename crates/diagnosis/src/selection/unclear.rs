@@ -12,6 +12,7 @@ use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
 use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
+use crate::selection::variation::is_variation;
 use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
 
 /// Why an effect is removed.
@@ -27,6 +28,8 @@ pub enum Unclear {
     Residual,
     /// A lag of its joints' torques explains as much.
     Lag,
+    /// Recordings of one side of the change differ by as much.
+    Variation,
 }
 
 impl Unclear {
@@ -38,6 +41,7 @@ impl Unclear {
             Self::Size => "its interval contains the value without effect",
             Self::Residual => "it may be a part of what is unexplained on its joint",
             Self::Lag => "a lag of its joints' torques explains as much",
+            Self::Variation => "recordings of one side of the change differ among themselves by as much",
         }
     }
 }
@@ -93,6 +97,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Residual)
         } else if may_be_a_lag(study, judged, member) {
             Some(Unclear::Lag)
+        } else if is_variation(study, judged, member) {
+            Some(Unclear::Variation)
         } else {
             None
         }

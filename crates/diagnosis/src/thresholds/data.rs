@@ -28,6 +28,12 @@ pub const NOISE_BAND: (f64, f64) = (1.7, 3.4);
 /// A channel is idle if it holds one and the same value in this part of the samples in motion. Source: recordings of real
 /// drives; in the worst of them, which stand in their dry friction, the part stays below it.
 pub const IDLE_CHANNEL: f64 = 0.6;
+/// A channel is too coarse if it shows at most this number of values in [`COARSE_PART`] of the samples in motion. Source: a UR3 simulated with
+/// another engine, whose wrists have torques of one to two steps: a torque limit of 0.4 to 4 mN m was named, and friction of 1.7 times the
+/// true one.
+pub const COARSE_CHANNEL: usize = 5;
+/// Nearly all samples: this part of them. Source: as for [`COARSE_CHANNEL`].
+pub const COARSE_PART: f64 = 0.98;
 /// For the test of idle channels, a joint moves where it is faster than this part of its largest speed.
 pub const CHANNEL_MOVES: f64 = 0.1;
 /// A torque channel with fewer moving samples or rows is not judged.
@@ -135,11 +141,14 @@ pub const LEAST_LAG: f64 = 0.003;
 pub const LEAST_LAGGING: usize = 3;
 /// A joint's lag is clear if it is this multiple of its standard deviation.
 pub const SURE_OF_LAG: f64 = 3.0;
-/// The evidence that a common lag must bring (nats). Source: ten simulated cases with torques behind a filter at 12 Hz, in which it has
-/// 400 and more.
-pub const LEAST_LAG_NATS: f64 = 50.0;
+/// The evidence that a common lag must bring (nats). Source: simulated cases with torques behind filters at 12 to 20 Hz, in which it has 48
+/// and more.
+pub const LEAST_LAG_NATS: f64 = 30.0;
 /// The part of the evidence for a lag of each joint that may contradict a common lag. Source: as for [`LEAST_LAG_NATS`] (at most 0.001),
 /// and the recordings of an iiwa 14 (0.26) and a KR 300 (0.26), whose joints have different lags.
 pub const MOST_OF_LAG: f64 = 0.1;
 /// The number of times that a lag is removed: the first estimate takes its effect as proportional to it.
 pub const MOST_LAGS: usize = 2;
+/// The times by which dry friction may turn round late beside a lag of all torques (s): two, because it approaches its level slowly. Source:
+/// a UR10 simulated with another engine, whose friction turns round over 0.3 to 1 mrad; a lag of 7 ms was found in all three.
+pub const TURNS_LATE: [f64; 2] = [0.005, 0.04];

@@ -155,3 +155,6 @@ pub const LINK_OVER_CONSTANTS: f64 = 2.0;
 /// named although they were up to 6.3 times as large as the stated size; of two more, one has 36 times it (an encoder offset explains
 /// it) and one 10.5 times.
 pub const SURELY_SEEN: f64 = 1.0 / 6.0;
+/// The multiple of [`REST`](crate::thresholds::REST) above which the deadband of a joint's velocity is said to come from the noise of its
+/// positions. Source: twice, so that the noise and not the speed decides.
+pub const NOISY_REST: f64 = 2.0;

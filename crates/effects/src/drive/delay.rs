@@ -48,6 +48,17 @@ pub static LATE: Law = Law {
     ..Law::PLAIN
 };
 
+/// sgn q̇(t) − sgn q̇(t − delay), for a coefficient of one: dry friction that turns round late; the size is the delay (s).
+pub static LATE_SIGN: Law = Law {
+    name: "late_sign",
+    column: |term, joint, motion| {
+        let signs = motion.map(|k| motion.sign(joint, k))?;
+        Some(late(&signs, term.sizes[0] / motion.period))
+    },
+    sizes: &[(Size::Main, 0)],
+    ..Law::PLAIN
+};
+
 /// A lag (s) whose column stands for those of other short lags, which are nearly proportional to it.
 pub const UNIT_LAG: f64 = 0.005;
 

@@ -56,9 +56,9 @@ const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
 const MOST_REMAINING: f64 = 0.5;
 /// The largest part of the moving rows that a torque limit may clip. Source: first diagnosis.
 const MOST_CLIPPED: f64 = 0.45;
-/// The least torque limit, as a part of the torque that the motion needs by the model, which may be wrong. Source: a simulated
-/// arm with a URDF wrong by 30 %, whose limit a value of 0.7 excluded.
-const BELOW_NEED: f64 = 0.45;
+/// The least torque limit, as a part of the torque that the motion needs by the model, which may be wrong. Source: two simulated
+/// arms with URDFs wrong by 30 %; a value of 0.7 excluded the limit of one, and 0.45 that of the other.
+const BELOW_NEED: f64 = 0.4;
 /// The least torque limit, as a multiple of the joint's dry friction. With a lower limit, the drive could hardly move
 /// the joint, and a torque that is mostly dry friction looks clipped at the friction level. Source: the TIAGo, on whose
 /// joint arm_1 a limit of 3.4 N m was named beside 3.3 N m of friction.

@@ -25,7 +25,7 @@ static SPEC: Spec = Spec {
         Parameter::new("positive", Quantity::Torque),
         Parameter::new("negative", Quantity::Torque),
     ],
-    main: &["positive"],
+    main: &["positive", "negative"],
     generalises: Some("coulomb_friction"),
     excludes: &["torque_offset", "spring"],
     // Every drive has a small asymmetry. In simulated cases with small effects on every joint (below 1.5 % of its torque),

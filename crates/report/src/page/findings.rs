@@ -9,7 +9,7 @@ use super::place::regions;
 use super::table::{name, number, table, words as text};
 use super::zoom::zoomable;
 use super::{Page, Section, key};
-use crate::{alternatives, numbers, words};
+use crate::{alternatives, numbers, sizes, words};
 
 /// The share of a joint's torque from which a whole-arm effect is shown in the joint's section.
 const SHOWN_SHARE: f64 = 0.02;
@@ -199,9 +199,7 @@ impl Page<'_> {
                 h4 {
                     (words::capital(&words::effect(finding)))
                     @if let Some(other) = &finding.other { " by " (other) }
-                    @if let Some((name, parameter)) = words::main_parameter(finding) {
-                        span.size { (numbers::with_interval(name, parameter)) }
-                    }
+                    @for size in sizes::list(finding) { span.size { (size) } }
                     span.odds {
                         (odds(finding).join(" · "))
                     }

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::table::{brief_table, number, words as text};
 use super::{Page, Section, key};
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, numbers, terminal, words};
+use crate::{alternatives, doubts, numbers, sizes, terminal, words};
 
 impl Page<'_> {
     /// `4 recordings, 1 held out`.
@@ -122,8 +122,9 @@ impl Page<'_> {
                 self.link(finding.joint.as_deref()),
                 html! { a href={ "#finding-" (index + 1) } { (words::effect(finding)) } },
                 html! {
-                    @if let Some((name, parameter)) = words::main_parameter(finding) {
-                        span.nowrap { (numbers::with_interval(name, parameter)) }
+                    @for (index, size) in sizes::list(finding).into_iter().enumerate() {
+                        @if index > 0 { br; }
+                        span.nowrap { (size) }
                     }
                 },
                 html! { span.nowrap {

@@ -5,7 +5,7 @@ use diagnosis::{Finding, Report, Unexplained};
 
 use super::steps::by_size;
 use super::{WIDTH, error, error_of, recordings};
-use crate::{numbers, words};
+use crate::{numbers, sizes, words};
 
 /// The title of a finding's effect, with the other joint of a coupling.
 fn effect(finding: &Finding) -> String {
@@ -85,7 +85,6 @@ pub fn table(report: &Report) -> String {
     for (joint, list) in by_joint {
         for (index, finding) in list.into_iter().enumerate() {
             let is_first = index == 0;
-            let size = words::main_parameter(finding);
             table.add_row([
                 if is_first {
                     words::joint(joint).to_owned()
@@ -93,9 +92,7 @@ pub fn table(report: &Report) -> String {
                     String::new()
                 },
                 effect(finding),
-                size.map_or("–".into(), |(name, parameter)| {
-                    numbers::with_interval(name, parameter)
-                }),
+                sizes::cell(finding, "\n"),
                 words::share(finding).map_or_else(|| "–".into(), numbers::share),
                 if is_first || joint.is_none() {
                     error(report, finding)

@@ -66,9 +66,15 @@ impl Study {
     /// `columns` and, after them, `more` terms fitted to the training recordings at given weights of the joints. The fit's columns are
     /// those of the background, and then the others in this order.
     pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> Fit {
+        self.table_and_fit_with(columns, more, weights).1
+    }
+
+    /// The same fit after the table of its columns.
+    pub fn table_and_fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> (Table, Fit) {
         let (table, products) = self.reduced(columns, more, self.moving, &self.strengths);
         let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
-        products.solve(&table, &columns, weights)
+        let fit = products.solve(&table, &columns, weights);
+        (table, fit)
     }
 
     /// Makes the prior of the links' inertial parameters quadratic about the bodies of `fit`.

@@ -1,4 +1,4 @@
-//! What explains the recordings in the place of one link that differs from the URDF.
+//! What explains the recordings in the place of links that differ from the URDF.
 
 use rayon::prelude::*;
 
@@ -17,10 +17,13 @@ impl Study {
     }
 
     /// The loss of score of `selected` (nats) if torque constants deviate in the place of `link`, and `link` differs from the URDF no more
-    /// than most links.
-    pub fn in_torque_constants(&self, selected: &Selection, link: usize) -> f64 {
+    /// than most links. Without a link, no link differs from the URDF.
+    pub fn in_torque_constants(&self, selected: &Selection, link: Option<usize>) -> f64 {
         let mut links = self.strengths.links.clone();
-        links[link] = self.strengths.common();
+        match link {
+            Some(link) => links[link] = self.strengths.common(),
+            None => links.fill(0.0),
+        }
         let loss = |gain: f64| {
             let strengths = Strengths {
                 links: links.clone(),

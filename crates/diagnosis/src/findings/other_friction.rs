@@ -1,0 +1,77 @@
+//! The sizes of Coulomb or viscous friction where the recordings do not tell one from the other.
+
+use effects::Term;
+
+use crate::report::{Finding, Parameter};
+use crate::selection::FinalFit;
+use crate::selection::judge::Member;
+use crate::selection::rivals::Standing;
+
+/// Widens the interval of `finding`, if it is friction that every joint has, by what the other such friction of its joint would change:
+/// both are probably there, although the recordings need one only.
+pub fn widen(finding: &mut Finding, last: &FinalFit, member: &Member, standing: &Standing) {
+    let study = &last.study;
+    let candidate = &study.candidates[member.candidate];
+    let spec = candidate.hypothesis.spec();
+    let other = standing
+        .rivals
+        .iter()
+        .find(|(hypothesis, joint)| hypothesis.spec().is_baseline && *joint == candidate.joint);
+    let (true, Some((other, joint)), [own]) = (spec.is_baseline, other, &candidate.columns[..]) else {
+        return;
+    };
+    let is_other = |index: &usize| {
+        let candidate = &study.candidates[*index];
+        candidate.hypothesis == *other && candidate.joint == *joint && study.always_acts(*index)
+    };
+    let Some(other) = (0..study.candidates.len()).find(is_other) else {
+        return;
+    };
+    let fit = &last.judged.named.fit;
+    let others: Vec<usize> = fit.selected().iter().copied().filter(|column| column != own).collect();
+    let own: Term = study.table.terms[*own];
+    // The size and its standard deviation, if the residual were white.
+    let size_with = |more: Vec<Term>| -> Option<[f64; 2]> {
+        let count = more.len();
+        let fit = study.fit_with(&others, more, &fit.weights);
+        let covariance = fit.information_of_last(count).try_inverse()?;
+        let value = fit.coefficients[fit.coefficients.len() - count];
+        Some([value, covariance[(0, 0)].sqrt()])
+    };
+    let alone = size_with(vec![own]);
+    let both = size_with([vec![own], study.terms(other)].concat());
+    let parameter = spec.main.first().and_then(|main| finding.parameters.get_mut(main));
+    if let (Some([_, alone]), Some([value, with_other]), Some(parameter)) = (alone, both, parameter) {
+        widen_to(parameter, value, with_other / alone);
+    }
+}
+
+/// Widens an interval to hold that about `value` which is `times` as wide. A level of friction is not negative.
+fn widen_to(parameter: &mut Parameter, value: f64, times: f64) {
+    let [low, high] = parameter.ci95;
+    let half = 0.5 * (high - low) * times;
+    if half.is_finite() {
+        parameter.ci95 = [low.min((value - half).max(0.0)), high.max(value + half)];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_holds_the_one_beside_the_other_friction() {
+        let widened = |value: f64, times: f64| {
+            let mut parameter = Parameter {
+                value: 4.0,
+                ci95: [3.0, 5.0],
+                unit: "N m",
+            };
+            widen_to(&mut parameter, value, times);
+            parameter.ci95
+        };
+        assert_eq!(widened(2.0, 1.5), [0.5, 5.0]);
+        assert_eq!(widened(4.0, 0.5), [3.0, 5.0], "it never becomes narrower");
+        assert_eq!(widened(1.0, 2.0), [0.0, 5.0], "no friction is negative");
+    }
+}

@@ -1,0 +1,197 @@
+//! Whether recordings of one side of a change differ among themselves as much as the two sides do.
+
+use effects::{Acts, Term};
+
+use crate::regression::table::Table;
+use crate::search::study::Study;
+use crate::selection::judge::{Judged, Member};
+use crate::thresholds::{BLOCKS_A_SIDE, CHANGE_OVER_VARIATION};
+
+/// A stretch of the recordings of one side.
+struct Block {
+    /// When it begins on the diagnosis' clock (s).
+    start: f64,
+    /// Whether it is after the change.
+    is_after: bool,
+}
+
+/// Whether a change since the recordings from before is not clearly larger than the differences between recordings of the same side: a
+/// one-way analysis of variance of the torques that the effect has in stretches of the recordings, fitted with a size of its own in each.
+/// What moves in the recordings of one side only cannot be compared, and is none.
+pub fn is_variation(study: &Study, judged: &Judged, member: &Member) -> bool {
+    let Some(changed_at) = study.data.motions.changed_at else {
+        return false;
+    };
+    study.changes(member.candidate)
+        && over_variation(study, judged, member, &blocks(study, member, changed_at))
+            .is_none_or(|ratio| ratio < CHANGE_OVER_VARIATION)
+}
+
+/// The stretches of the training recordings in the order of time: halves of the motion in each recording, or several of them, at most
+/// [`BLOCKS_A_SIDE`] on each side.
+fn blocks(study: &Study, member: &Member, changed_at: f64) -> Vec<Block> {
+    let (motions, table) = (&study.data.motions, &study.table);
+    let times = motions.row_times();
+    let on = (0..motions.dof).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]));
+    let moving = on.map_or_else(Vec::new, |joint| table.moving_rows(joint, &study.data.fitted));
+    let mut blocks = Vec::new();
+    for is_after in [false, true] {
+        let mut pieces: Vec<f64> = Vec::new();
+        for rows in &table.rows {
+            let of_recording: Vec<usize> = moving.iter().copied().filter(|row| rows.contains(row)).collect();
+            let (Some(&first), Some(&middle)) = (of_recording.first(), of_recording.get(of_recording.len() / 2)) else {
+                continue;
+            };
+            if (times[first] >= changed_at) == is_after {
+                pieces.extend([times[first], times[middle]]);
+            }
+        }
+        let count = pieces.len().min(BLOCKS_A_SIDE);
+        blocks.extend((0..count).map(|block| Block {
+            start: pieces[block * pieces.len() / count],
+            is_after,
+        }));
+    }
+    blocks
+}
+
+/// The mean square of the change's torque over the one that the differences between stretches of the same side would give; `None` if the
+/// effect has no torque on one side.
+fn over_variation(study: &Study, judged: &Judged, member: &Member, blocks: &[Block]) -> Option<f64> {
+    let fit = &judged.named.fit;
+    let own = &study.candidates[member.candidate].columns;
+    let changing = |column: usize| !study.table.terms[column].is_always();
+    let (mut terms, mut kept): (Vec<Term>, Vec<usize>) = (Vec::new(), Vec::new());
+    for &column in &fit.columns[fit.background..] {
+        if own.contains(&column) && changing(column) {
+            terms.push(Term {
+                acts: Acts::Always,
+                ..study.table.terms[column]
+            });
+        } else {
+            kept.push(column);
+        }
+    }
+    // A size that acts always is fitted once.
+    kept.retain(|&column| !terms.contains(&study.table.terms[column]));
+    let acts = |block: usize| {
+        if block == 0 {
+            Acts::Always
+        } else {
+            Acts::Since(blocks[block].start)
+        }
+    };
+    let more: Vec<Term> = (0..blocks.len())
+        .flat_map(|block| {
+            terms.iter().map(move |term| Term {
+                acts: acts(block),
+                ..*term
+            })
+        })
+        .collect();
+    let (table, fit) = study.table_and_fit_with(&kept, more, &fit.weights);
+    let first = fit.background + kept.len();
+    // The size of each term in each stretch: each column adds to those before it.
+    let steps = &fit.coefficients[first..];
+    let mut sizes = vec![vec![0.0; terms.len()]; blocks.len()];
+    for block in 0..blocks.len() {
+        for term in 0..terms.len() {
+            let before = if block > 0 { sizes[block - 1][term] } else { 0.0 };
+            sizes[block][term] = before + steps[block * terms.len() + term];
+        }
+    }
+    Torques::new(study, &table, member, terms.len(), blocks).over_variation(&sizes, blocks)
+}
+
+/// The columns of an effect's terms on the rows in motion, over the torques' standard deviations: `[block][row][term]`.
+struct Torques(Vec<Vec<Vec<f64>>>);
+
+impl Torques {
+    fn new(study: &Study, table: &Table, member: &Member, terms: usize, blocks: &[Block]) -> Self {
+        // The columns of the first stretch act always.
+        let first = table.terms.len() - terms * blocks.len();
+        let times = study.data.motions.row_times();
+        let mut all: Vec<Vec<Vec<f64>>> = blocks.iter().map(|_| Vec::new()).collect();
+        for joint in (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0) {
+            let unit = study.data.scales.torque[joint];
+            let columns: Vec<Vec<f64>> = (first..first + terms)
+                .map(|column| table.torque(joint, &[column], &[1.0]))
+                .collect();
+            for row in table.moving_rows(joint, &study.data.fitted) {
+                let block = blocks.iter().rposition(|block| block.start <= times[row]);
+                all[block.unwrap_or(0)].push(columns.iter().map(|column| column[row] / unit).collect());
+            }
+        }
+        Self(all)
+    }
+
+    /// See [`over_variation`]; `sizes` are those of the terms in each stretch.
+    fn over_variation(&self, sizes: &[Vec<f64>], blocks: &[Block]) -> Option<f64> {
+        let terms = sizes.first()?.len();
+        let energy = |rows: &Vec<Vec<f64>>, term: usize| rows.iter().map(|row| row[term].powi(2)).sum::<f64>();
+        let energies: Vec<Vec<f64>> = self
+            .0
+            .iter()
+            .map(|rows| (0..terms).map(|term| energy(rows, term)).collect())
+            .collect();
+        let side = |is_after: bool| (0..blocks.len()).filter(move |&block| blocks[block].is_after == is_after);
+        let mean = |is_after: bool, term: usize| {
+            let all: f64 = side(is_after).map(|block| energies[block][term]).sum();
+            let sum: f64 = side(is_after)
+                .map(|block| energies[block][term] * sizes[block][term])
+                .sum();
+            (all > 0.0).then(|| sum / all)
+        };
+        let means: Vec<[f64; 2]> = (0..terms)
+            .map(|term| Some([mean(false, term)?, mean(true, term)?]))
+            .collect::<Option<_>>()?;
+        let (mut within, mut change) = (0.0, 0.0);
+        for (block, rows) in self.0.iter().enumerate() {
+            let own = usize::from(blocks[block].is_after);
+            for row in rows {
+                let torque = |of: &dyn Fn(usize) -> f64| (0..terms).map(|term| of(term) * row[term]).sum::<f64>();
+                within += torque(&|term| sizes[block][term] - means[term][own]).powi(2);
+                change += torque(&|term| means[term][1] - means[term][0]).powi(2);
+            }
+        }
+        // The number of stretches with equal torques that would be worth as much.
+        let number = |is_after: bool| {
+            let of_blocks = || side(is_after).map(|block| energies[block].iter().sum::<f64>());
+            of_blocks().sum::<f64>().powi(2) / of_blocks().map(|energy| energy * energy).sum::<f64>()
+        };
+        let (before, after) = (number(false), number(true));
+        let freedom = (before + after - 2.0).max(0.0);
+        Some(change * before * after / (before + after).powi(2) * freedom / within)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two stretches before and two after a change, with one term whose torque is one on all rows.
+    fn ratio(sizes: [f64; 4]) -> Option<f64> {
+        let blocks: Vec<Block> = (0..4)
+            .map(|block| Block {
+                start: f64::from(block),
+                is_after: block >= 2,
+            })
+            .collect();
+        let torques = Torques(vec![vec![vec![1.0]; 10]; 4]);
+        torques.over_variation(&sizes.map(|size| vec![size]), &blocks)
+    }
+
+    /// The F statistic of a one-way analysis of variance. `scipy.stats.f_oneway([1.0, 1.2], [2.0, 2.4])` gives 24.2 for the four sizes.
+    #[test]
+    fn it_is_the_statistic_of_an_analysis_of_variance() {
+        let found = ratio([1.0, 1.2, 2.0, 2.4]).expect("both sides have torque");
+        assert!((found - 24.2).abs() < 1e-9, "{found}");
+    }
+
+    #[test]
+    fn a_side_without_torque_cannot_be_compared() {
+        let blocks = [false, true].map(|is_after| Block { start: 0.0, is_after });
+        let torques = Torques(vec![vec![vec![1.0]], vec![vec![0.0]]]);
+        assert_eq!(torques.over_variation(&[vec![1.0], vec![2.0]], &blocks), None);
+    }
+}
