@@ -11,7 +11,9 @@ use super::inertials::{Inertials, inertials, leave_out_single_links};
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
-use super::verdict::{ask_for_motion, beyond_limits, not_enough, poorly_predicted, unexplained, verdict, with_places};
+use super::verdict::{
+    ask_for_motion, beyond_limits, moves_in_training, not_enough, poorly_predicted, unexplained, verdict, with_places,
+};
 use super::{dual_sensor, sentences, transients};
 use crate::data::Data;
 use crate::data::input::Input;
@@ -102,7 +104,9 @@ impl Conclusion {
             // More data are the only next step.
             unexplained.clear();
         }
-        let links_not_named = leave_out_single_links(&mut findings, &unexplained);
+        let of_moved = unexplained.iter().filter(|open| moves_in_training(last, open));
+        let of_moved: Vec<Unexplained> = of_moved.cloned().collect();
+        let links_not_named = leave_out_single_links(&mut findings, &of_moved);
         if !has_findings {
             beyond_limits(&data.arm, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);

@@ -112,13 +112,19 @@ pub fn poorly_predicted(
 
 /// Asks for a training recording of joints that none moves.
 pub fn ask_for_motion(last: &FinalFit, unexplained: &mut [Unexplained]) {
+    for open in unexplained.iter_mut().filter(|open| !moves_in_training(last, open)) {
+        open.next = format!("add a training recording in which {} moves", open.joint);
+    }
+}
+
+/// Whether a training recording moves the joint of a residual. The residual of a joint at rest is that of its dry friction or its brake, which
+/// hold any torque.
+pub fn moves_in_training(last: &FinalFit, open: &Unexplained) -> bool {
     let study = &last.study;
     let joints = study.data.arm.joints().iter().enumerate();
-    for (_, described) in joints.filter(|(joint, _)| study.table.moving_rows(*joint, &study.data.fitted).is_empty()) {
-        for open in unexplained.iter_mut().filter(|open| open.joint == described.name) {
-            open.next = format!("add a training recording in which {} moves", described.name);
-        }
-    }
+    joints
+        .filter(|(_, described)| described.name == open.joint)
+        .any(|(joint, _)| !study.table.moving_rows(joint, &study.data.fitted).is_empty())
 }
 
 /// The error of a joint (NRMSE) on the training recordings, if it is large and structured. Rows in which a named contact acts do not

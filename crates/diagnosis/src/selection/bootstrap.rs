@@ -11,7 +11,7 @@ use crate::data::statistics::{NORMAL_95, quantile_of_sorted};
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
-use crate::thresholds::{BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, MOST_BLOCKS, NEARLY_AS_LIKELY, UNEVEN};
+use crate::thresholds::{BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, MOST_BLOCKS, UNEVEN};
 
 /// The relative step of a derivative by a size.
 const STEP: f64 = 0.02;
@@ -86,7 +86,7 @@ impl Resampled {
                 .choose(selected.set.clone(), &selected.fit.weights);
             (strengths, next)
         });
-        let Some((strengths, next)) = preferred.or_else(|| study.with_all_links(selected, NEARLY_AS_LIKELY)) else {
+        let Some((strengths, next)) = preferred.or_else(|| study.with_all_links(selected)) else {
             return;
         };
         let own = std::mem::replace(&mut study.strengths, strengths);

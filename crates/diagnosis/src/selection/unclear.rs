@@ -13,7 +13,7 @@ use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
 use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
 use crate::selection::variation::is_variation;
-use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
+use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED, LEAST_PAYLOAD};
 
 /// Why an effect is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Unclear {
     Contradicted,
     /// Its onset may be anywhere.
     Onset,
-    /// Its size may be zero.
+    /// Its size may be zero, or is that of an error of the last link.
     Size,
     /// It may be a part of the residual of its joint.
     Residual,
@@ -118,13 +118,25 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
         first.is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
     };
     // Wrong links do not excuse a body without mass that is new: they are the same before it was there.
-    let is_new_body =
-        |study: &Study, member: usize| study.candidates[member].hypothesis.is(&Payload) && !study.always_acts(member);
+    let is_payload = |study: &Study, member: usize| study.candidates[member].hypothesis.is(&Payload);
+    let is_new_body = |study: &Study, member: usize| is_payload(study, member) && !study.always_acts(member);
+    // A body of a few grams that was always there is no other than the last link with a mass of its usual accuracy.
+    let last_mass = study.data.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass);
+    let is_within_last_link = |study: &Study, member: usize| {
+        let mass = name(study, resampled, member).first()?.parameters.get("mass")?.value;
+        Some(mass.abs() < LEAST_PAYLOAD * last_mass)
+    };
+    let is_tiny = |study: &Study, member: usize| {
+        is_payload(study, member)
+            && study.always_acts(member)
+            && is_within_last_link(study, member).is_some_and(|is_within| is_within)
+    };
     let mut list = judged.named.set.clone();
     list.retain(|&member| {
-        may_be(study, member)
-            && (is_new_body(study, member)
-                || study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED)
+        is_tiny(study, member)
+            || may_be(study, member)
+                && (is_new_body(study, member)
+                    || study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED)
     });
     list
 }

@@ -121,3 +121,6 @@ pub const LEAST_ALIKE: usize = 2;
 /// The evidence from the constant torques of single recordings that decides between the offset of a sensor and friction that depends on
 /// the direction (nats). Source: nine such constants in six sets of simulated cases, of which it decides five, all rightly.
 pub const DIRECTION_NATS: f64 = 1.0;
+/// The least payload beside a link as it is in the URDF, as a part of the last link's mass. Source: 131 simulated recordings of arms whose links
+/// are wrong by 3 %, in three of which a payload of −8 to 7 g was named.
+pub const LEAST_PAYLOAD: f64 = 0.03;

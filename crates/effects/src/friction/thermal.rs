@@ -107,6 +107,11 @@ impl EffectKind for ThermalDrift {
         cold > 0.0 && warm > 0.0 && cold < MOST_COLD * warm && (0..fitted.len()).all(|k| is_slow(fitted.term(k)))
     }
 
+    /// The final fit, beside other effects, may leave hardly any warm friction.
+    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
+        effect.number("amplitude") < MOST_COLD
+    }
+
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let (a, b) = (estimate.place(0)?, estimate.place(1)?);
         let second = *estimate.terms().get(1)?;
@@ -142,6 +147,14 @@ impl EffectKind for ThermalDrift {
 mod tests {
     use super::*;
     use crate::test_support::agree;
+
+    /// Friction that is ten times as large on the cold drive as on the warm one is no friction.
+    #[test]
+    fn a_cold_drive_has_a_limited_friction() {
+        let drift = |amplitude: f64| Effect::of(&ThermalDrift).on("a").with("amplitude", amplitude);
+        assert!(ThermalDrift.is_certain(&drift(2.0), &|_| None, 0.0));
+        assert!(!ThermalDrift.is_certain(&drift(9.7), &|_| None, 0.0));
+    }
 
     #[test]
     fn its_columns_are_its_torque() {

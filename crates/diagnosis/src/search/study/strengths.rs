@@ -1,6 +1,7 @@
 //! Selects the strengths of the background together with the effects, by the gain of the score.
 
 use effects::Scales;
+use effects::arm::Payload;
 use rayon::prelude::*;
 
 use super::Study;
@@ -10,8 +11,8 @@ use crate::regression::fit::Products;
 use crate::regression::strengths::{Part, Strengths};
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
-    HOPELESS_EXCHANGE, LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_LATER_GAIN, MOST_SELECTED, MOVED,
-    OWN_STRENGTHS, PER_IMITATION,
+    AS_LIKELY_BESIDE_EXACT, HOPELESS_EXCHANGE, LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_LATER_GAIN,
+    MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS, PER_IMITATION,
 };
 
 /// The largest number of effects that may together replace a part of the background.
@@ -104,12 +105,20 @@ impl Study {
             .collect()
     }
 
-    /// The strongest background in which all links differ from the URDF and whose score is less than `margin` above that of
-    /// `selected` (nats), and `selected` fitted again beside it. `None` if there is none, if none or all of the links differ already,
-    /// or if the user states the strengths.
-    pub fn with_all_links(&self, selected: &Selection, margin: f64) -> Option<(Strengths, Selection)> {
+    /// The strongest background in which all links differ from the URDF and which is nearly as likely as that of `selected` by its score,
+    /// and `selected` fitted again beside it. `None` if there is none, if all of the links differ already, if none do
+    /// and no payload is selected, whose mass depends on them, or if the user states the strengths.
+    pub fn with_all_links(&self, selected: &Selection) -> Option<(Strengths, Selection)> {
         let links = &self.strengths.links;
-        if self.strengths.common() > 0.0 || links.iter().all(|&rho| rho == 0.0) || self.stated.links.is_some() {
+        let has_payload = selected.set.iter().any(|&c| self.candidates[c].hypothesis.is(&Payload));
+        let margin = if links.iter().any(|&rho| rho > 0.0) {
+            NEARLY_AS_LIKELY
+        } else if has_payload {
+            AS_LIKELY_BESIDE_EXACT
+        } else {
+            return None;
+        };
+        if self.strengths.common() > 0.0 || self.stated.links.is_some() {
             return None;
         }
         let at_least = |least: f64| {
