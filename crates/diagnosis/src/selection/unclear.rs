@@ -122,14 +122,10 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
     let is_new_body = |study: &Study, member: usize| is_payload(study, member) && !study.always_acts(member);
     // A body of a few grams that was always there is no other than the last link with a mass of its usual accuracy.
     let last_mass = study.data.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass);
-    let is_within_last_link = |study: &Study, member: usize| {
-        let mass = name(study, resampled, member).first()?.parameters.get("mass")?.value;
-        Some(mass.abs() < LEAST_PAYLOAD * last_mass)
-    };
     let is_tiny = |study: &Study, member: usize| {
-        is_payload(study, member)
-            && study.always_acts(member)
-            && is_within_last_link(study, member).is_some_and(|is_within| is_within)
+        let is_small = |named: &Named| named.effect.number("mass").abs() < LEAST_PAYLOAD * last_mass;
+        let always = is_payload(study, member) && study.always_acts(member);
+        always && name(study, resampled, member).first().is_some_and(is_small)
     };
     let mut list = judged.named.set.clone();
     list.retain(|&member| {
@@ -169,8 +165,8 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
     }
 }
 
-/// Whether the effect is a torque along the velocity of another joint, and a lag of the torques of its joints explains as much. Where little accelerates, a lag of the torque of
-/// gravity is a torque along the velocities of all joints that the gravity depends on.
+/// Whether the effect is a torque along the velocity of another joint, and a lag of the torques of its joints explains as much. Where
+/// little accelerates, a lag of the torque of gravity is a torque along the velocities of all joints that the gravity depends on.
 fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
     if candidate.hypothesis.spec().against != Against::OtherSpeed {
@@ -178,7 +174,7 @@ fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool 
     }
     let Selection { fit, .. } = &judged.named;
     let columns = |keeps: &dyn Fn(usize) -> bool| -> Vec<usize> {
-        let selected = fit.columns[fit.background..].iter().copied();
+        let selected = fit.selected().iter().copied();
         selected.filter(|&column| keeps(column)).collect()
     };
     let joints = (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0);

@@ -62,12 +62,9 @@ fn over_variation(study: &Study, judged: &Judged, member: &Member, blocks: &[Blo
     let own = &study.candidates[member.candidate].columns;
     let changing = |column: usize| !study.table.terms[column].is_always();
     let (mut terms, mut kept): (Vec<Term>, Vec<usize>) = (Vec::new(), Vec::new());
-    for &column in &fit.columns[fit.background..] {
+    for &column in fit.selected() {
         if own.contains(&column) && changing(column) {
-            terms.push(Term {
-                acts: Acts::Always,
-                ..study.table.terms[column]
-            });
+            terms.push(study.table.terms[column].always());
         } else {
             kept.push(column);
         }
