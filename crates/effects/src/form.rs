@@ -156,10 +156,8 @@ impl Form {
 pub struct SetsIn {
     /// Its place in the order of these searches and sums.
     pub turn: u8,
-    /// Its columns on a joint, without an onset (the joint is ignored for the whole arm).
-    pub terms: fn(usize) -> Vec<Term>,
-    /// The number of columns with which the onset is searched.
+    /// The columns of each of its forms on a joint, without an onset (the joint is ignored for the whole arm).
+    pub forms: fn(usize) -> Vec<Vec<Term>>,
+    /// The number of columns of the first form with which the onset is searched.
     pub looked_for_with: usize,
-    /// The numbers of columns of the candidates with an onset; each number gives one candidate.
-    pub taken: &'static [usize],
 }

@@ -118,7 +118,10 @@ pub mod arm {
     pub use inertial_parameters::{InertialParameters, PARAMETER as INERTIAL_PARAMETER};
     pub use inertial_scale::InertialScale;
     pub use link_error::LinkInertialError;
-    pub use payload::{PARAMETER as PAYLOAD_PARAMETER, Payload, body, exists};
+    pub use payload::{
+        PARAMETER as PAYLOAD_PARAMETER, Payload, WITHOUT_MOMENTS as PAYLOAD_WITHOUT_MOMENTS, body, exists,
+        moments_by_first,
+    };
     pub use tensor::{entries, second_moments, tensor};
     pub use tilt::GravityMisalignment;
 }

@@ -41,7 +41,8 @@ pub struct Rigid<'a> {
     pub rest: &'a [Vec<f64>],
     /// Each link's share of τ: `[joint][link]`.
     pub links: &'a [Vec<Vec<f64>>],
-    /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`.
+    /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`. If the model has a body
+    /// whose tensor about its centre of mass is fixed, four more follow: its mass and first moments, with which its moments change.
     pub payload: &'a [Vec<Vec<f64>>],
     /// The torque of each body that the URDF fixes to the last link ([`::arm::Arm::fixed_bodies`]): `[joint][body]`.
     pub fixed_bodies: &'a [Vec<Vec<f64>>],

@@ -7,6 +7,7 @@ use effects::{Scales, Signals};
 use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
+use crate::regression::bodies::WITHOUT_MOMENTS;
 
 /// Signals on the ticks of one chunk. The first index is the joint, the last one the tick.
 #[derive(Clone, Debug, Default)]
@@ -20,7 +21,8 @@ pub struct Rigid {
     pub rest: Vec<Vec<f64>>,
     /// Each link's share of τ: `[joint][link]`.
     pub links: Vec<Vec<Vec<f64>>>,
-    /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`.
+    /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`. Four more if the arm has a
+    /// payload without moments.
     pub payload: Vec<Vec<Vec<f64>>>,
     /// The torque of each body that the URDF fixes to the last link: `[joint][body]`.
     pub fixed_bodies: Vec<Vec<Vec<f64>>>,
@@ -99,6 +101,20 @@ impl Rigid {
         self.background = self.tau.clone();
         for (background, tau) in self.background.iter_mut().zip(tau.chunks_exact(chunk.ticks())) {
             background.iter_mut().zip(tau).for_each(|(sum, tau)| *sum -= tau);
+        }
+    }
+
+    /// Adds four columns to those of a payload: of its mass and first moments, if its moments of inertia are not fitted but follow from
+    /// them by these `derivatives` of each moment.
+    pub fn add_payload_without_moments(&mut self, derivatives: &[[f64; 6]; 4]) {
+        for columns in &mut self.payload {
+            for (first, by) in derivatives.iter().enumerate() {
+                let mut sum = columns[first].clone();
+                for (column, by) in columns[WITHOUT_MOMENTS..].iter().zip(by) {
+                    sum.iter_mut().zip(column).for_each(|(sum, value)| *sum += by * value);
+                }
+                columns.push(sum);
+            }
         }
     }
 

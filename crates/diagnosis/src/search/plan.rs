@@ -62,8 +62,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         let allowed = study.allowed();
         let before = set.clone();
         selected = problem.choose(set, &selected.fit.weights);
-        let pruned = problem.prune(selected.clone());
-        study.note("costs more evidence than it brings", &selected, &pruned);
+        let pruned = study.pruned(&products, selected);
         selected = study.grown(pruned, &allowed);
         let products = study.training_products();
         let swapped = study.problem(&products).swap(selected.clone(), &allowed, MOST_SWAPS);

@@ -40,6 +40,9 @@ impl Selection {
 /// The rule that removes what is physically impossible.
 pub const IMPOSSIBLE: &str = "its parameters are not physical";
 
+/// The rule that removes what does not pay.
+pub const DOES_NOT_PAY: &str = "costs more evidence than it brings";
+
 /// The data of the search.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
@@ -182,7 +185,16 @@ impl Problem<'_> {
     }
 
     /// Removes members that do not pay, or that are impossible, one by one.
-    pub fn prune(&self, mut selected: Selection) -> Selection {
+    pub fn prune(&self, selected: Selection) -> Selection {
+        self.prune_noting(selected, |_, _, _| {})
+    }
+
+    /// As [`Self::prune`], and tells `note` each removal: its rule, and the selections before and after it.
+    pub fn prune_noting(
+        &self,
+        mut selected: Selection,
+        note: impl Fn(&'static str, &Selection, &Selection),
+    ) -> Selection {
         loop {
             let best = (0..selected.set.len())
                 .into_par_iter()
@@ -197,7 +209,10 @@ impl Problem<'_> {
                 .into_iter()
                 .min_by(|a, b| b.0.cmp(&a.0).then(a.1.score.total_cmp(&b.1.score)));
             match best {
-                Some((must, next)) if must || next.score <= selected.score => selected = self.reweighted(next),
+                Some((must, next)) if must || next.score <= selected.score => {
+                    note(if must { IMPOSSIBLE } else { DOES_NOT_PAY }, &selected, &next);
+                    selected = self.reweighted(next);
+                }
                 _ => return selected,
             }
         }

@@ -152,9 +152,7 @@ pub fn refine(study: &mut Study, selected: Selection, again: bool) -> Selection 
     let selected = resize(study, selected, again);
     study.note("a better size or form", &before, &selected);
     let products = study.training_products();
-    let pruned = study.problem(&products).prune(selected.clone());
-    study.note("costs more evidence than it brings", &selected, &pruned);
-    pruned
+    study.pruned(&products, selected)
 }
 
 /// Refines the sizes in `selected`; all members stay, in their order.

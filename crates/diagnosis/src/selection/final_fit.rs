@@ -116,9 +116,7 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
         relinearise_once(study, judged, as_given);
         if !as_given {
             let products = study.training_products();
-            let problem = study.problem(&products);
-            let pruned = problem.prune(judged.named.clone());
-            study.note("costs more evidence than it brings", &judged.named, &pruned);
+            let pruned = study.pruned(&products, judged.named.clone());
             judged.named = named_alone(study, pruned);
             let products = study.training_products();
             judged.members = judge::describe(&study.problem(&products), &judged.named);

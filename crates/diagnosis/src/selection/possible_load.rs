@@ -1,6 +1,6 @@
 //! Payloads whose moments of inertia no body has, because the recordings do not determine all of them.
 
-use effects::arm::{PAYLOAD_PARAMETER, Payload, body, exists};
+use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, Payload, body, exists};
 use nalgebra::Matrix6;
 
 use crate::regression::bodies::{PER_LINK, WITHOUT_MOMENTS, nearest_tensor};
@@ -28,7 +28,10 @@ pub fn make_possible(study: &mut Study, judged: &mut Judged) -> bool {
     }
     let is_same = |&c: &usize| {
         let other = &study.candidates[c];
-        other.columns[..] == columns[..WITHOUT_MOMENTS] && other.hypothesis == study.candidates[payload].hypothesis
+        let first = &study.table.terms[other.columns[0]];
+        other.hypothesis.is(&Payload)
+            && first.always().is(&PAYLOAD_WITHOUT_MOMENTS)
+            && first.acts == study.table.terms[columns[0]].acts
     };
     let Some(without) = (0..study.candidates.len()).find(is_same) else {
         return false;

@@ -61,6 +61,20 @@ pub static PARAMETER: Law = Law {
     ..Law::PLAIN
 };
 
+/// The mass and the first moments at the tool of a body whose tensor about its centre of mass is not fitted. About the tool's origin, its
+/// moments of inertia change with them, once an arm contains the body.
+pub static WITHOUT_MOMENTS: Law = Law {
+    name: "payload without moments",
+    column: |term, joint, motion| {
+        let columns = &motion.rigid.payload[joint];
+        let of_body = columns.get(10 + term.of[0]);
+        Some(of_body.unwrap_or(&columns[term.of[0]]).clone())
+    },
+    needs_model: true,
+    carry: PARAMETER.carry,
+    ..Law::PLAIN
+};
+
 /// A body that the URDF fixes to the last link and that is not mounted.
 pub static NOT_MOUNTED: Law = Law {
     name: "body that is not mounted",
@@ -108,6 +122,22 @@ pub fn body(parameters: &[f64; 10]) -> Inertia {
     }
 }
 
+/// The derivatives of the moments of inertia about the origin (xx, xy, yy, xz, yz, zz) of a body with this mass and these first moments,
+/// and a fixed tensor about its centre of mass, with respect to the mass and to each first moment (m² and m); zero without a mass.
+/// By the parallel axes, the moments are those about the centre of mass plus (|h|² 1 − h hᵀ) / m.
+pub fn moments_by_first(mass: f64, first: Vector3<f64>) -> [[f64; 6]; 4] {
+    if mass == 0.0 {
+        return [[0.0; 6]; 4];
+    }
+    let com = first / mass;
+    let along = |k: usize| {
+        let axis = Vector3::ith(k, 1.0);
+        Matrix3::identity() * (2.0 * com[k]) - axis * com.transpose() - com * axis.transpose()
+    };
+    let of_mass = com * com.transpose() - Matrix3::identity() * com.norm_squared();
+    [of_mass, along(0), along(1), along(2)].map(|by| entries(&by))
+}
+
 /// Whether a body may have this tensor. A missing body has a negative mass and the negative of a tensor.
 pub fn exists(mass: f64, tensor: &Matrix3<f64>) -> bool {
     second_moments(&(tensor * mass.signum())).symmetric_eigenvalues().min() >= 0.0
@@ -145,8 +175,16 @@ fn at_tool(arm: &Arm, k: usize) -> Inertia {
     arm.fixed_bodies()[k].inertia.transformed(&tool_from_link)
 }
 
-fn columns(count: usize) -> Vec<Term> {
-    (0..count).map(|parameter| Term::about(&PARAMETER, parameter)).collect()
+fn columns(law: &'static Law, count: usize) -> Vec<Term> {
+    (0..count).map(|parameter| Term::about(law, parameter)).collect()
+}
+
+fn with_moments() -> Vec<Term> {
+    columns(&PARAMETER, 10)
+}
+
+fn without_moments() -> Vec<Term> {
+    columns(&WITHOUT_MOMENTS, 4)
 }
 
 impl EffectKind for Payload {
@@ -162,16 +200,15 @@ impl EffectKind for Payload {
         let drawn = bodies
             .filter(|(_, body)| body.inertia.mass >= LEAST_OF_LAST_LINK * last)
             .map(|(k, _)| Form::of_arm(vec![Term::about(&NOT_MOUNTED, k)]));
-        let free = [10, 4].map(|count| Form::of_arm(columns(count)));
+        let free = [with_moments(), without_moments()].map(Form::of_arm);
         free.into_iter().chain(drawn).collect()
     }
 
     fn sets_in(&self) -> Option<SetsIn> {
         Some(SetsIn {
             turn: 4,
-            terms: |_| columns(10),
+            forms: |_| vec![with_moments(), without_moments()],
             looked_for_with: 4,
-            taken: &[10, 4],
         })
     }
 
@@ -197,10 +234,8 @@ impl EffectKind for Payload {
         if let Some(term) = terms.first().filter(|term| std::ptr::eq(term.law, &NOT_MOUNTED)) {
             return Self::read_not_mounted(estimate, term.of[0]);
         }
-        let places: [Option<usize>; 10] = std::array::from_fn(|parameter| {
-            let of = |term: &Term| term.always() == Term::about(&PARAMETER, parameter);
-            estimate.place(terms.iter().position(of)?)
-        });
+        let places: [Option<usize>; 10] =
+            std::array::from_fn(|parameter| estimate.place(terms.iter().position(|term| term.of[0] == parameter)?));
         let read = |draw: &[f64]| places.map(|place| place.map_or(0.0, |place| draw[place]));
         // Wrong masses of the links are the same before a payload is picked up.
         let always = terms.iter().all(Term::is_always);

@@ -62,9 +62,8 @@ impl EffectKind for QuadraticDrag {
     fn sets_in(&self) -> Option<SetsIn> {
         Some(SetsIn {
             turn: 3,
-            terms: |joint| vec![Term::on(&DRAG, joint).sized([2.0])],
+            forms: |joint| vec![vec![Term::on(&DRAG, joint).sized([2.0])]],
             looked_for_with: 1,
-            taken: &[1],
         })
     }
 

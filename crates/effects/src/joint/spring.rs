@@ -84,9 +84,8 @@ impl EffectKind for Spring {
     fn sets_in(&self) -> Option<SetsIn> {
         Some(SetsIn {
             turn: 2,
-            terms: |joint| columns(joint, &[1]),
+            forms: |joint| vec![columns(joint, &[1])],
             looked_for_with: 2,
-            taken: &[2],
         })
     }
 

@@ -55,9 +55,8 @@ impl EffectKind for TorqueOffset {
     fn sets_in(&self) -> Option<SetsIn> {
         Some(SetsIn {
             turn: 0,
-            terms: |joint| vec![Term::on(&ONE, joint)],
+            forms: |joint| vec![vec![Term::on(&ONE, joint)]],
             looked_for_with: 1,
-            taken: &[1],
         })
     }
 

@@ -73,9 +73,8 @@ impl EffectKind for TorqueScale {
     fn sets_in(&self) -> Option<SetsIn> {
         Some(SetsIn {
             turn: 1,
-            terms: |joint| vec![Term::on(&RIGID, joint)],
+            forms: |joint| vec![vec![Term::on(&RIGID, joint)]],
             looked_for_with: 1,
-            taken: &[1],
         })
     }
 

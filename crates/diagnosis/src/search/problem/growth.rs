@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::{IMPOSSIBLE, Problem, Selection};
+use super::{DOES_NOT_PAY, IMPOSSIBLE, Problem, Selection};
 use crate::regression::fit::LeftOut;
 use crate::search::candidate::Hypothesis;
 use crate::thresholds::{FITTED_AT_ONCE, FORMS_AT_ONCE, MOST_BATCHES, MOST_PROMISING};
@@ -136,7 +136,7 @@ impl Problem<'_> {
                     let (possible, pays) = (self.is_possible(added, &next.fit), next.score < selected.score);
                     let rule = match (possible, pays) {
                         (false, _) => IMPOSSIBLE,
-                        (true, false) => "costs more evidence than it brings",
+                        (true, false) => DOES_NOT_PAY,
                         (true, true) => "another gains more",
                     };
                     growth.tried.push((added, next.score, rule));

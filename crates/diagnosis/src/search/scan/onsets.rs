@@ -47,16 +47,16 @@ pub fn onsets(
     places
         .into_par_iter()
         .flat_map_iter(|(joint, kind, form)| {
-            let what = (form.terms)(joint.unwrap_or(0));
+            let forms = (form.forms)(joint.unwrap_or(0));
             let joints = joint.map_or_else(|| all.clone(), |joint| vec![joint]);
-            let from = past.best(&joints, &what[..form.looked_for_with]);
+            let from = past.best(&joints, &forms[0][..form.looked_for_with]);
             let hypothesis = Hypothesis { kind, other: None };
-            let candidate = move |from: f64| {
-                let since = |count: &usize| what[..*count].iter().map(|term| term.since(from)).collect();
-                let taken: Vec<Vec<Term>> = form.taken.iter().map(since).collect();
-                taken.into_iter().map(move |terms| (hypothesis, joint, terms))
+            let since = |from: f64| {
+                let candidate =
+                    |terms: &Vec<Term>| (hypothesis, joint, terms.iter().map(|term| term.since(from)).collect());
+                forms.iter().map(candidate).collect()
             };
-            from.into_iter().flat_map(candidate)
+            from.map_or_else(Vec::new, since)
         })
         .collect()
 }

@@ -1,13 +1,13 @@
 //! The arm of a fit, about which columns are linearised: the remaining tilts, encoder offsets and payloads are small.
 
 use arm::{Arm, Inertia, Matrix3, Vector3};
-use effects::arm::{INERTIAL_PARAMETER, body};
+use effects::arm::{INERTIAL_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, body, moments_by_first};
 use effects::{Carried, Term};
 
 use crate::data::Data;
 use crate::data::motion::Chunk;
 use crate::data::rigid::Rigid;
-use crate::regression::bodies;
+use crate::regression::bodies::{self, WITHOUT_MOMENTS};
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 
@@ -19,6 +19,8 @@ pub struct About {
     pub offset: Vec<f64>,
     /// The arm without the background's changes of inertial parameters; `None` if there are none.
     pub bare: Option<Arm>,
+    /// The derivatives of the moments of a payload that are not fitted, if the fit has such a payload ([`moments_by_first`]).
+    pub moments: Option<[[f64; 6]; WITHOUT_MOMENTS]>,
     /// The terms that it contains at any time, with their coefficients.
     pub carried: Vec<(Term, f64)>,
 }
@@ -74,6 +76,9 @@ impl About {
         if let Some(bare) = &self.bare {
             rigid.set_background(bare, chunk);
         }
+        if let Some(moments) = &self.moments {
+            rigid.add_payload_without_moments(moments);
+        }
         rigid
     }
 
@@ -93,10 +98,11 @@ impl About {
             gravity,
         } = found;
         let tilt = Vector3::new(x, y, 0.0);
+        let has_moments = payload[WITHOUT_MOMENTS..].iter().any(|&moment| moment != 0.0);
         let finish = |mut arm: Arm| {
             if payload[0] != 0.0 {
                 let mut body = body(&payload);
-                if payload[4..].iter().all(|&moment| moment == 0.0) {
+                if !has_moments {
                     body.tensor = *load;
                 }
                 arm = arm.with_payload(&body);
@@ -110,6 +116,13 @@ impl About {
             }
             arm
         };
+        let first = Vector3::new(payload[1], payload[2], payload[3]);
+        let is_without = |(term, _): &(Term, f64)| term.always().is(&PAYLOAD_WITHOUT_MOMENTS);
+        // Also where this stage has no such payload, because the signals of all stages are the same ones.
+        let moments = carried
+            .iter()
+            .any(is_without)
+            .then(|| moments_by_first(if has_moments { 0.0 } else { payload[0] }, first));
         let is_changed = inertial.iter().any(|&value| value != 0.0);
         let bare = is_changed.then(|| finish(arm.clone()));
         if is_changed {
@@ -125,6 +138,7 @@ impl About {
             arm: finish(arm),
             offset,
             bare,
+            moments,
             carried,
         }
     }
@@ -163,4 +177,77 @@ fn collected(data: &Data, table: &Table, fit: &Fit, at: f64) -> (Carried, Vec<(T
         }
     }
     (found, carried)
+}
+
+#[cfg(test)]
+mod tests {
+    use arm::{Arm, Inertia};
+
+    use super::*;
+    use crate::data::signal::Kernel;
+
+    /// A payload whose moments are not fitted has those of its mass and first moments, so that its columns are the derivatives of the
+    /// torque with these moments.
+    #[test]
+    fn columns_of_a_payload_without_moments_are_derivatives() {
+        let urdf = include_str!("../../../tests/support/trio.urdf");
+        let arm = Arm::from_urdf_text(urdf, "trio.urdf").expect("it is an arm");
+        let ticks = 20;
+        let signal = |turn: f64| {
+            let of = |joint: usize| {
+                (0..ticks)
+                    .map(move |tick| (turn + joint as f64 + 0.3 * tick as f64).sin())
+                    .collect()
+            };
+            (0..3).map(of).collect::<Vec<Vec<f64>>>()
+        };
+        let chunk = Chunk {
+            recording: 0,
+            start: 0.0,
+            period: 0.01,
+            q: signal(0.0),
+            qd: signal(1.0),
+            qdd: signal(2.0),
+            tau: signal(3.0),
+            kernel: Kernel::new(10.0, 0.01),
+            stride: 1,
+        };
+        let values = [0.6, 0.05, -0.02, 0.1];
+        let along = |values: [f64; 4], moments: Option<[[f64; 6]; 4]>| {
+            let [mass, x, y, z] = values;
+            let payload = Inertia {
+                mass,
+                com: Vector3::new(x, y, z) / mass,
+                tensor: Matrix3::identity() * 1e-3,
+            };
+            let about = About {
+                arm: arm.clone().with_payload(&payload),
+                offset: vec![0.0; 3],
+                bare: None,
+                moments,
+                carried: Vec::new(),
+            };
+            about.rigid(&arm.inertial_parameters(), &chunk)
+        };
+        let moments = moments_by_first(values[0], Vector3::new(values[1], values[2], values[3]));
+        let columns = along(values, Some(moments)).payload;
+        for parameter in 0..4 {
+            let moved = |by: f64| {
+                let mut values = values;
+                values[parameter] += by;
+                along(values, None).tau
+            };
+            let (before, after) = (moved(-1e-5), moved(1e-5));
+            for joint in 0..3 {
+                for tick in 0..ticks {
+                    let expected = (after[joint][tick] - before[joint][tick]) / 2e-5;
+                    let found = columns[joint][10 + parameter][tick];
+                    assert!(
+                        (found - expected).abs() < 1e-6 * expected.abs().max(1.0),
+                        "{found} for {expected}"
+                    );
+                }
+            }
+        }
+    }
 }

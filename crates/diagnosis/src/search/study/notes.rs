@@ -3,6 +3,7 @@
 use effects::Acts;
 
 use super::Study;
+use crate::regression::fit::Products;
 use crate::search::problem::Selection;
 use crate::trace::Action;
 
@@ -37,6 +38,12 @@ impl Study {
         if !rows.is_empty() {
             self.trace.step(rows);
         }
+    }
+
+    /// `selected` without the members that do not pay or are impossible, each of which is recorded; `products` are those of this study.
+    pub fn pruned(&self, products: &Products, selected: Selection) -> Selection {
+        let note = |rule: &'static str, before: &Selection, after: &Selection| self.note(rule, before, after);
+        self.problem(products).prune_noting(selected, note)
     }
 
     /// Records candidates that were fitted in addition to `selected` and not taken, each with the score that it would have given.

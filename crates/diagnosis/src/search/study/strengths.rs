@@ -184,9 +184,7 @@ impl Study {
                 break;
             }
         }
-        let pruned = self.problem(&products).prune(selected.clone());
-        self.note("costs more evidence than it brings", &selected, &pruned);
-        pruned
+        self.pruned(&products, selected)
     }
 
     /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
