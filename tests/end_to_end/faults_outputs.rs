@@ -177,14 +177,15 @@ fn a_read_only_folder_is_reported_before_the_work() {
 fn only_earlier_outputs_are_replaced() {
     let case = case();
     for (option, name, text) in [
-        ("--residuals", "own.csv", "t,q_a,tau_a\n0,0,0\n"),
+        ("--residuals", "own.csv", "t,q_a,measured_a\n0,0,0\n"),
+        ("--residuals", "own.parquet", "PAR1 measured_a PAR1"),
         ("--trace", "own.csv", "t,q_a,tau_a\n0,0,0\n"),
         ("--urdf", "own.urdf", crate::diagnose_made::URDF),
         ("--mjcf", "own.xml", crate::diagnose_made::URDF),
         ("--model", "own.toml", "[a]\nq = \"p\"\n"),
-        ("--json", "own.json", "{\"a\": 1}\n"),
-        ("--report", "own.html", "<title>mine</title>\n"),
-        ("--markdown", "own.md", "# Mine\n"),
+        ("--json", "own.json", "{\n  \"schema\": \"testbed.seal/1\"\n}\n"),
+        ("--report", "own.html", "<title>Diagnosis of mine</title>\n"),
+        ("--markdown", "own.md", "# Diagnosis of mine\n"),
     ] {
         case.sandbox.write(name, text);
         let message = case.sandbox.refuse(&arguments(&[option, name]));

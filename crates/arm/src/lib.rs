@@ -20,6 +20,9 @@
 //! # Ok::<(), arm::ArmError>(())
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod batch;
 mod chain;
 mod derivatives;

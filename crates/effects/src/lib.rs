@@ -15,6 +15,9 @@
 //! assert_eq!(effects::spec("coulomb_friction").map(|spec| spec.title), Some("Coulomb friction"));
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod apply;
 pub mod background;
 mod compliance;

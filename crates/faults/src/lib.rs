@@ -16,6 +16,9 @@
 //! assert_eq!(campaign.case(3), plans.get(3).cloned());
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod campaign;
 mod case;
 mod case_machine;

@@ -26,6 +26,9 @@
 //! [`LagrangianGp`] is a regression of another kind: of the torques of all joints of an arm at once, by Gaussian processes of its
 //! energies.
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod algebra;
 mod climb;
 mod conditioning;

@@ -33,6 +33,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod bodies;
 mod complementarity;
 mod engine;

@@ -3,6 +3,9 @@
 //! Arrays come in as C-contiguous copies of `float64` with the shapes that `_core.pyi` says. Computations run without the
 //! interpreter's lock.
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod diagnose;
 mod dynamics;
 mod error;

@@ -18,6 +18,9 @@
 //! # Ok::<(), recording::RecordingError>(())
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod arrays;
 mod bag_course;
 mod bag_order;

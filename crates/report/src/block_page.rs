@@ -19,7 +19,7 @@ pub fn block_page(title: &str, eyebrow: &str, blocks: &[Block], made: &str) -> S
         @for block in blocks { (markup(block)) }
         p.small.soft { (inline(made)) }
     };
-    shell(title, STYLE, body, &[])
+    shell(title, "testbed", STYLE, body, &[])
 }
 
 fn markup(block: &Block) -> Markup {

@@ -13,6 +13,9 @@
 //! assert!(text.starts_with("# A report") && text.contains("| elbow | 0.22 |"));
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod alternatives;
 pub mod block;
 mod block_page;

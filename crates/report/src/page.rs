@@ -112,6 +112,7 @@ impl<'a> Page<'a> {
         };
         shell(
             &format!("Diagnosis of {}", self.report.robot),
+            "testbed diagnose",
             "",
             body,
             &[UPLOT, VIEWER],

@@ -27,6 +27,9 @@
 //! # Ok::<(), serde_json::Error>(())
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod answer;
 mod calibration;
 mod catalogue;

@@ -30,6 +30,9 @@
 //! # Ok::<(), anyhow::Error>(())
 //! ```
 
+// Only the command line prints.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 pub mod check;
 pub mod effect_file;
 pub mod held;

@@ -9,3 +9,4 @@ mod residuals_file;
 mod trace_file;
 
 pub use command::run;
+pub use residuals_file::mark as residuals_mark;

@@ -57,7 +57,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
         output::check_writable(path)?;
         let inputs = args.files.iter().chain(&args.map).map(PathBuf::as_path);
         output::check_is_no_input(path, inputs.chain(args.robot.as_deref().map(Path::new)))?;
-        OutputFile::json(path).check()?;
+        OutputFile::json(path, "\"schema\": \"testbed.inspect/").check()?;
     }
     let robot = args.robot.as_deref().map(robot::named_robot).transpose()?;
     let map = args.map.as_deref().map(ColumnMap::load).transpose()?;

@@ -134,9 +134,9 @@ impl<'a> OutputFile<'a> {
         Self { mark, ..self }
     }
 
-    /// The file of `--json`.
-    pub fn json(path: &'a Path) -> Self {
-        let (option, endings, mark) = ("--json", &["json"], "\"schema\": \"testbed.");
+    /// The file of `--json`, which replaces only files with this mark: the line of its schema.
+    pub fn json(path: &'a Path, mark: &'static str) -> Self {
+        let (option, endings) = ("--json", &["json"]);
         Self {
             option,
             path,
@@ -158,7 +158,8 @@ impl<'a> OutputFile<'a> {
 
     /// The file of `--rerun save=FILE`.
     pub fn rerun(path: &'a Path) -> Self {
-        let (option, endings, mark) = ("--rerun save", &["rrd"], "");
+        // The name of the application stands uncompressed at the file's beginning.
+        let (option, endings, mark) = ("--rerun save", &["rrd"], "testbed_");
         Self {
             option,
             path,

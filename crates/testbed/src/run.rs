@@ -189,8 +189,9 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
     );
     folder::check_distinct(&outputs, &inputs)?;
     let rerun = observers::rerun_file(args, here);
-    let asked = args.json.as_deref().map(OutputFile::json);
+    let asked = args.json.as_deref();
     asked
+        .map(|path| OutputFile::json(path, "\"schema\": \"testbed.run/"))
         .into_iter()
         .chain(rerun.as_deref().map(OutputFile::rerun))
         .try_for_each(|file| file.check())

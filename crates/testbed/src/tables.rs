@@ -99,7 +99,7 @@ pub fn table_1(train: &Scenario, test: &Scenario, options: &TrainingOptions) -> 
 pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyhow::Result<()> {
     if let Some(path) = json {
         output::check_writable(path)?;
-        OutputFile::json(path).marked("\"tables\": [").check()?;
+        OutputFile::json(path, "\"tables\": [").check()?;
     }
     let started = Instant::now();
     let rows: Vec<ModelKind> = ROWS

@@ -93,7 +93,7 @@ pub struct Correlation {
 pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.json {
         output::check_writable(path)?;
-        OutputFile::json(path).check()?;
+        OutputFile::json(path, "\"schema\": \"testbed.transfer/").check()?;
     }
     ensure!(
         (2..=MOST_TASKS).contains(&args.train.len()),

@@ -9,6 +9,7 @@ use study::{Known, Request};
 use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency, parse_lag};
 use super::rerun::{Rerun, parse_rerun};
+use crate::diagnose::residuals_mark;
 use crate::output::{self, OutputFile};
 
 /// The catalogue's effects with their meanings, each wrapped beside its name.
@@ -185,14 +186,18 @@ impl DiagnoseArgs {
     pub fn outputs(&self) -> Vec<OutputFile<'_>> {
         let given = OutputFile::given;
         let files = [
-            self.json_file().map(OutputFile::json),
-            given("--report", self.report.as_deref(), &["html", "htm"]).map(|file| file.marked("<title>Diagnosis of ")),
+            self.json_file()
+                .map(|path| OutputFile::json(path, "\"schema\": \"testbed.diagnosis/")),
+            given("--report", self.report.as_deref(), &["html", "htm"])
+                .map(|file| file.marked("name=\"generator\" content=\"testbed diagnose\"")),
             self.markdown
                 .as_deref()
                 .map(OutputFile::markdown)
-                .map(|file| file.marked("# Diagnosis of ")),
-            given("--residuals", self.residuals.as_deref(), &["csv", "parquet"]).map(|file| file.marked("measured_")),
-            given("--model", self.model.as_deref(), &["toml"]).map(|file| file.marked("schema = \"testbed.model/")),
+                .map(|file| file.marked("(`testbed diagnose`), schema `testbed.diagnosis/")),
+            given("--residuals", self.residuals.as_deref(), &["csv", "parquet"])
+                .map(|file| file.marked(residuals_mark(file.path))),
+            given("--model", self.model.as_deref(), &["toml"])
+                .map(|file| file.marked("# Effects that the URDF omits; testbed diagnose reads them")),
             given("--urdf", self.urdf.as_deref(), &["urdf", "xml"])
                 .map(|file| file.marked("Corrected by testbed diagnose")),
             given("--trace", self.trace.as_deref(), &["csv"]).map(|file| file.marked("step,action,effect,")),

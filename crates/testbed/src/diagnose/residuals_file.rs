@@ -40,6 +40,17 @@ impl Kind {
     }
 }
 
+/// The creator of Parquet files.
+const CREATED_BY: &str = concat!("testbed residuals ", env!("CARGO_PKG_VERSION"));
+
+/// By which an earlier file at `path` is recognised.
+pub fn mark(path: &Path) -> &'static str {
+    match Kind::of(path) {
+        Ok(Kind::Parquet) => "testbed residuals ",
+        _ => "recording,held_out,t,measured_",
+    }
+}
+
 /// The values of one column in one recording.
 enum Values<'a> {
     /// One text, in every row.
@@ -144,7 +155,7 @@ fn parquet(joints: &[&str], traces: &Traces) -> anyhow::Result<Vec<u8>> {
     let schema = Type::group_type_builder("residuals").with_fields(fields).build()?;
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
-        .set_created_by(concat!("testbed ", env!("CARGO_PKG_VERSION")).to_owned())
+        .set_created_by(CREATED_BY.to_owned())
         .build();
     let mut bytes = Vec::new();
     let mut writer = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;

@@ -33,7 +33,12 @@ use crate::written::Written;
 pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
-        OutputFile::markdown(path).check()?;
+        let mark = if args.published.is_some() {
+            "Made by `testbed prove --published`"
+        } else {
+            "Made by `testbed prove`;"
+        };
+        OutputFile::markdown(path).marked(mark).check()?;
     }
     ensure!(
         !args.chain.is_given() || (args.cases_from.is_none() && args.published.is_none() && args.merge.is_none()),
