@@ -172,10 +172,7 @@ fn the_corrected_model_is_that_of_today() {
         let run = |further: &[&str]| sandbox.succeed(&[&["diagnose"], &inputs[..], further].concat());
         let told = run(&["--before", &before, "--json", "d.json", "--model", "m.toml"]);
         let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(
-            told.starts_with("Since the recordings from before, this changed:"),
-            "{told}"
-        );
+        assert!(told.starts_with("Changed since the recordings from before:"), "{told}");
         assert!(told.contains(phrase), "{told}");
         let found = sandbox.json("d.json");
         let changed: Vec<&str> = found["findings"]

@@ -228,16 +228,12 @@ fn what_a_diagnosis_says_can_be() {
         cut_short > 0,
         "no stretch is near the end of its recording: this test says nothing"
     );
-    let mut at_no_size = 0;
+    let mut stated = 0;
     for entry in report["not_observable"].as_array().expect("a list") {
         let above = |key: &str| entry["would_be_seen_above"][key].as_f64();
         assert!(above("offset").is_none_or(|offset| offset < 0.2), "{entry}");
         assert!(above("gain").is_none_or(|gain| gain < 1.0), "{entry}");
-        let is_linear = entry["effect"] == "encoder_offset" || entry["effect"] == "load_dependent_friction";
-        let is_empty = entry["would_be_seen_above"]
-            .as_object()
-            .is_some_and(serde_json::Map::is_empty);
-        at_no_size += usize::from(is_linear && is_empty);
+        stated += usize::from(above("offset").or(above("gain")).is_some());
     }
-    assert!(at_no_size > 0, "every size can be: this test says nothing");
+    assert!(stated > 0, "no size is stated: this test says nothing");
 }

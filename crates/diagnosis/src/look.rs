@@ -105,7 +105,7 @@ impl Look {
         let slower = self.slower();
         let before = self.last.study.data.motions.cutoff;
         let open = self.conclusion.unexplained.len();
-        // What most joints have in common is not one effect that the filter hides.
+        // A residual on most joints has another cause than an effect that the filter hides.
         if is_stated
             || open == 0
             || 2 * open > arm.dof()

@@ -52,8 +52,8 @@ macro_rules! decisive {
 
 decisive! {
     /// The residual that the best model may have, as a share of the standard deviation of the joint's torque. Source:
-    /// its form from a prototype in Python, where it was 0.01, because a floor does what a plain BIC does not beside
-    /// correlated residuals; the value from the first diagnosis.
+    /// its form from a prototype in Python, where it was 0.01: beside correlated residuals, the BIC alone accepts effects that only
+    /// fit the residual, and a floor prevents that; the value from the first diagnosis.
     tolerance: 0.006,
     /// The evidence that each coefficient must bring (nats). Source: first diagnosis; the BIC (Schwarz 1978) has ½ ln
     /// N, which is 2.5 for 148 independent samples.

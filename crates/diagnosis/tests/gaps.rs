@@ -1,10 +1,10 @@
-//! Gaps in the gear of a joint about the vertical, on which gravity does not act.
+//! Gaps in the gear of a joint about the vertical, on which gravity does not act, and delays.
 
 mod support;
 
-use diagnosis::Diagnosis;
+use diagnosis::{Diagnosis, NotObservable};
 use support::gap::with_gap;
-use support::{diagnosed, effects_on, sentences, trio};
+use support::{baseline_friction, diagnosed, effects_on, sentences, trio};
 
 /// The diagnosis of a gap on a URDF whose links are wrong by `wrong`, and its size found over the true one.
 fn found(halfgap: f64, wrong: f64) -> (Diagnosis, f64) {
@@ -38,4 +38,19 @@ fn gaps_are_named_with_their_size() {
             );
         }
     }
+}
+
+/// The shoulder moves slowly under a large weight: even a delay as long as a drive may have changes its torque too little. No size
+/// is stated then, and the elbow's delay has one.
+#[test]
+fn a_delay_that_no_drive_has_is_not_stated() {
+    let arm = trio();
+    let diagnosis = diagnosed(&arm, &arm, &|motion, tau| baseline_friction(motion, tau), Vec::new());
+    let delay = |joint: &str| {
+        let of = |entry: &&NotObservable| entry.effect == "actuation_delay" && entry.joint.as_deref() == Some(joint);
+        let entry = diagnosis.report.not_observable.iter().find(of).expect("it is listed");
+        entry.would_be_seen_above.get("delay").copied()
+    };
+    assert_eq!(delay("shoulder"), None);
+    assert!(delay("elbow").is_some_and(|delay| delay > 0.0));
 }

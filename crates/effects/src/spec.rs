@@ -250,8 +250,8 @@ pub struct Spec {
     pub main: &'static [&'static str],
     /// Whether it may begin within the recordings.
     pub may_set_in: bool,
-    /// Whether it may have acted before a change only: it has one sign, so that no effect in addition to it cancels it, or the background
-    /// holds it while it acts. Not for a friction that generalises a simpler one, whose level remains.
+    /// Whether it is looked for as an effect that acted before a change only: because it has one sign, so that no second effect cancels it,
+    /// or because the background represents it while it acts. Not a friction that generalises a simpler one, which would remain.
     pub may_end: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,

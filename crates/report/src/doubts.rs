@@ -7,7 +7,7 @@ use crate::words;
 /// How a column map is used that concerns all recordings.
 const USE: &str = ": save it as `map.toml`, and add `--map map.toml` to the command.";
 /// How it is used if it does not concern all recordings.
-const USE_FOR_SOME: &str = ". With `--map`, all files of a command are read with one map, and this one is wrong for the others: \
+const USE_FOR_SOME: &str = ". With `--map`, all files of a command are read with one map, and this map fits this file only: \
                             correct the columns of this file as the map says, or leave the file out.";
 
 /// Whether what a sentence says is certain enough to prevent a diagnosis.

@@ -4,9 +4,9 @@ use diagnosis::{JointFit, Report};
 
 use crate::{numbers, words};
 
-/// The error of the exported model is stated if it is larger than that of the table by this factor,
+/// The error of the exported model is stated only if it is at least this multiple of the table's.
 const LARGER_WITHOUT: f64 = 1.5;
-/// and by this part of the torque's standard deviation.
+/// The least difference of the two errors at which that of the exported model is stated (over the torque's standard deviation).
 const LARGER_BY: f64 = 0.02;
 
 /// What they do not have, in sentences: effects between two sensors of a joint, and the background's
@@ -28,7 +28,7 @@ pub fn notes(report: &Report) -> Vec<String> {
         .collect();
     if !between.is_empty() {
         notes.push(format!(
-            "no file of the corrected model has {}: found between two sensors of a joint, not in its torque",
+            "no file of the corrected model has {}: it acts between two sensors of a joint, and not on its torque",
             words::list(&between)
         ));
     }
@@ -48,7 +48,7 @@ pub fn notes(report: &Report) -> Vec<String> {
         .collect();
     if !larger.is_empty() {
         notes.push(format!(
-            "the error with a file of the corrected model is {}: no file has the background's corrections of friction and torque constants",
+            "the error of an exported model is {}: no file has the background's corrections of friction and torque constants",
             words::list(&larger)
         ));
     }

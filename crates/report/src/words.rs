@@ -171,7 +171,7 @@ pub fn changed(report: &Report) -> Option<String> {
     let text = match report.changed.as_deref()? {
         [] if report.different_load.is_some() => return None,
         [] => "Since the recordings from before, no change was found.".to_owned(),
-        list => format!("Since the recordings from before, this changed: {}.", list.join("; ")),
+        list => format!("Changed since the recordings from before: {}.", list.join("; ")),
     };
     Some(text)
 }
@@ -321,7 +321,7 @@ fn explains(report: &Report) -> String {
     match largest_error(report) {
         None => "explains the recordings".to_owned(),
         Some((joint, error)) if error >= NOISY => format!(
-            "agrees with the recordings as far as their noise shows, which is {} times the torque's standard deviation on {joint}",
+            "leaves a residual that looks like noise, of {} times the torque's standard deviation ({joint})",
             numbers::nrmse(error)
         ),
         Some((joint, error)) => format!(

@@ -291,8 +291,8 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         let is_constant = smooth.q[joint].windows(2).all(|pair| pair[0] == pair[1]);
         if is_constant && as_it_is.residual_share[joint] > NOT_EXPLAINED && as_it_is.size[joint] > OF_SIZE.start {
             let text = format!(
-                "the position is {} in all rows, but the torque varies by {} times as much as the model's at that position, which \
-                 explains {} of it; was the position recorded?",
+                "the position is {} in all rows, but the torque varies by {} times as much as the model's at that position, and \
+                 the model explains {} of the torque; was the position recorded?",
                 rounded(smooth.q[joint][0], 4),
                 rounded(as_it_is.size[joint], 2),
                 percent(1.0 - as_it_is.residual_share[joint])

@@ -14,7 +14,7 @@ mod shard;
 
 use crate::models::ModelKind;
 pub use chain::ChainArgs;
-pub use diagnose::DiagnoseArgs;
+pub use diagnose::{DiagnoseArgs, RESIDUALS_CREATOR};
 pub use excite::{ExciteArgs, Limit};
 use numbers::parse_urdf_error;
 pub use rerun::Rerun;
@@ -136,7 +136,7 @@ pub struct TablesArgs {
 
 #[derive(Debug, Args)]
 pub struct TransferArgs {
-    /// The tasks to train on, 2 to 6 of them, alone and together; each is also tested on
+    /// The tasks (2 to 6): a model is trained on every combination of them, and tested on each
     #[arg(
         long,
         value_name = "A,B,…",
@@ -208,7 +208,7 @@ pub struct ProveArgs {
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_value_t = true, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub lifelike: bool,
 
-    /// How wrong the inertial parameters of all links are in the URDF, relative [default: 0, 0.03, 0.1 and 0.3 in turns]
+    /// Relative error of all links' inertial parameters in the URDF [default: 0, 0.03, 0.1 and 0.3 in turns]
     #[arg(long, value_name = "SIGMA", value_parser = parse_urdf_error)]
     pub urdf_error: Option<f64>,
 

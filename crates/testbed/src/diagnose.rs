@@ -9,4 +9,3 @@ mod residuals_file;
 mod trace_file;
 
 pub use command::run;
-pub use residuals_file::mark as residuals_mark;

@@ -7,7 +7,6 @@ use effects::{Scales, Signals};
 use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
-use crate::regression::bodies::WITHOUT_MOMENTS;
 
 /// Signals on the ticks of one chunk. The first index is the joint, the last one the tick.
 #[derive(Clone, Debug, Default)]
@@ -110,7 +109,7 @@ impl Rigid {
         for columns in &mut self.payload {
             for (first, by) in derivatives.iter().enumerate() {
                 let mut sum = columns[first].clone();
-                for (column, by) in columns[WITHOUT_MOMENTS..].iter().zip(by) {
+                for (column, by) in columns[derivatives.len()..].iter().zip(by) {
                     sum.iter_mut().zip(column).for_each(|(sum, value)| *sum += by * value);
                 }
                 columns.push(sum);

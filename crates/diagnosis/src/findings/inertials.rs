@@ -31,7 +31,7 @@ pub struct Inertials {
 }
 
 /// Leaves out the findings of single links beside residuals that no effect explains: a part of such a residual resembles one wrong link
-/// more often than one link among right ones is wrong. What only lasts for some time counts on the joints on which the link acts.
+/// more often than one link among right ones is wrong. A residual that only lasts for some time counts if it is on a joint on which the link acts.
 /// Returns a note on the links.
 pub fn leave_out_single_links(
     findings: &mut Vec<(Finding, Option<usize>)>,
@@ -215,7 +215,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let effects = forms.into_iter().map(|(_, form)| confusable(form));
         Some((margin, rivals.chain(effects).collect()))
     };
-    // The same for links that are all wrong; their alternatives are effects beside links that are less wrong.
+    // The margin and the alternatives of links that are all wrong: effects beside links that are less wrong.
     let everywhere = || -> Option<(f64, Vec<Confusable>)> {
         let constants = study.in_torque_constants(&judged.named, None);
         if constants < LINK_OVER_CONSTANTS {

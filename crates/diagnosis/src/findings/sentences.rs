@@ -81,7 +81,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         (None, None) => text,
     };
     if is_undetermined(finding) {
-        text.push_str(", of a size that these recordings do not determine");
+        text.push_str(", with a size that these recordings do not determine");
     }
     text
 }
@@ -128,8 +128,8 @@ pub fn not_compared(data: &Data) -> Option<String> {
         names.join(", ")
     };
     let parts = [
-        ("moves only in the recordings from before", names(true)),
-        ("does not move in the recordings from before", names(false)),
+        ("joints that move only in the recordings from before", names(true)),
+        ("joints that do not move in the recordings from before", names(false)),
     ];
     let parts = parts.into_iter().filter(|(_, names)| !names.is_empty());
     let parts: Vec<String> = parts.map(|(which, names)| format!("{which}: {names}")).collect();

@@ -54,7 +54,7 @@ struct Residuals<'a> {
 }
 
 /// Searches transients in the residuals of the named effects (`[joint][row]`) in the held-out recordings. `force` are the columns of
-/// a force on the tool that always acts; if a contact is named, another one is none.
+/// a force on the tool that always acts. If a contact is named, no further contact is reported.
 pub fn search(
     data: &Data,
     table: &Table,

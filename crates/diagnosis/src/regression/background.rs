@@ -27,7 +27,7 @@ pub struct Prior {
     links: Vec<Quadratic>,
     /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
     deviations: Vec<f64>,
-    /// Another one whenever the prior changes.
+    /// A new one whenever the prior changes, by which cached products are recognised.
     identity: Arc<()>,
 }
 
@@ -114,8 +114,8 @@ impl Prior {
     }
 
     /// The next bodies on the way from the physically possible bodies `from` to those of a fit, `to`, as changes of the URDF's inertial
-    /// parameters (ten per link), and the largest step of a link in the metric of pseudo-inertias about `from`. As long as the fit's
-    /// bodies are not possible, the way ends on this side of them.
+    /// parameters (ten per link), and the largest step of a link in the metric of pseudo-inertias about `from`. If the
+    /// fit's bodies are not possible, the step ends at the last possible ones before them.
     pub fn towards(&self, from: &[f64], to: &[f64]) -> (Vec<f64>, f64) {
         let step: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
         let links = || {

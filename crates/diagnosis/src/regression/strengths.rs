@@ -25,8 +25,8 @@ pub struct Strengths {
     pub nameless_offsets: Vec<usize>,
     /// The joints whose torque constant is a named effect, so that it is not in the background.
     pub named_constants: Vec<usize>,
-    /// The joints whose torque constant would be wrong by more than any is, so that it is not in the background either: an effect
-    /// must explain that.
+    /// The joints whose torque constant would differ from one by more than [`MOST_CONSTANT`](crate::thresholds::MOST_CONSTANT), so that it
+    /// is not in the background: an effect must explain the difference.
     pub impossible_constants: Vec<usize>,
 }
 

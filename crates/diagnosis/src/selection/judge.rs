@@ -28,8 +28,8 @@ pub struct Member {
     pub shares: Vec<f64>,
     /// The loss of the score without it (nats).
     pub evidence: f64,
-    /// The part of the joint's torque that is explained with it and unexplained without it (RMS over standard deviation). For a
-    /// form of a simpler effect: without it, but with the simpler effect.
+    /// The part of the joint's torque that only it explains (RMS over standard deviation); for a form of a simpler effect, the part that the
+    /// simpler effect does not explain either.
     pub beyond: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Torque constants that deserve a name: the background corrects all of them a little, and one that deviates much is an effect.
+//! Torque constants beyond their tolerance: the background corrects all of them a little, and one that deviates more is an effect with a name.
 
 use effects::arm::InertialScale;
 use effects::sensor::TorqueScale;

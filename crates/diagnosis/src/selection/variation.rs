@@ -17,7 +17,7 @@ struct Block {
 
 /// Whether a change since the recordings from before is not clearly larger than the differences between recordings of the same side: a
 /// one-way analysis of variance of the torques that the effect has in stretches of the recordings, fitted with a size of its own in each.
-/// What moves in the recordings of one side only cannot be compared, and is none.
+/// An effect whose joint moves in the recordings of one side only cannot be compared; it is not a variation.
 pub fn is_variation(study: &Study, judged: &Judged, member: &Member) -> bool {
     let Some(changed_at) = study.data.motions.changed_at else {
         return false;

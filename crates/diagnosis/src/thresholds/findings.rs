@@ -62,7 +62,7 @@ pub const FOLLOWS: f64 = 0.5;
 /// A difference of encoders beyond this part of the joint's range is not a deflection, because the encoders measure
 /// different quantities. Source: first diagnosis.
 pub const LARGEST_DEFLECTION: f64 = 0.05;
-/// The part of the difference of two encoders that the torque must bend. Source: first diagnosis.
+/// The least part of the difference of two encoders that must be proportional to the torque. Source: first diagnosis.
 pub const LEAST_BEND: f64 = 0.4;
 /// A compliance must exceed this multiple of its standard error. Source: first diagnosis.
 pub const CLEAR_COMPLIANCE: f64 = 4.0;
@@ -156,5 +156,5 @@ pub const LINK_OVER_CONSTANTS: f64 = 2.0;
 /// it) and one 10.5 times.
 pub const SURELY_SEEN: f64 = 1.0 / 6.0;
 /// The multiple of [`REST`](crate::thresholds::REST) above which the deadband of a joint's velocity is said to come from the noise of its
-/// positions. Source: twice, so that the noise and not the speed decides.
+/// positions: twice, so that the noise and not the speed decides. Source: none.
 pub const NOISY_REST: f64 = 2.0;

@@ -8,9 +8,9 @@ pub const EVIDENCE_RATE: f64 = 4.0;
 pub const EVIDENCE_PER_PERIOD: f64 = 8.0;
 /// Independent pieces of evidence in a second of any motion, at most (1/s). Source: first diagnosis.
 pub const MOST_EVIDENCE_RATE: f64 = 10.0;
-/// Stretches of the only recording that moves a joint: each is predicted by the others. Source: first diagnosis.
+/// The number of parts into which the only recording that moves a joint is divided for cross-validation. Source: first diagnosis.
 pub const STRETCHES: usize = 4;
-/// Groups of recordings, each of which is predicted by the others. Source: first diagnosis.
+/// The number of groups into which several recordings are divided for cross-validation. Source: first diagnosis.
 pub const RECORDING_GROUPS: usize = 6;
 /// The prior standard deviation of friction's form, and of its change from recording to recording, at strength one, as
 /// a part of the joint's torque. Source: a prototype of the background in Python, on 17 of the open cases: a tenth of
@@ -122,7 +122,7 @@ pub const OF_ARM: f64 = 0.3;
 /// this above (nats); intervals then hold those of both backgrounds. Source: a simulated arm whose links are all wrong by 3 %, where
 /// the difference is 13.
 pub const NEARLY_AS_LIKELY: f64 = 15.0;
-/// The same where no link differs, for the interval of a payload. Source: an arm that holds three joints still, simulated with another engine,
+/// As [`NEARLY_AS_LIKELY`], for the interval of a payload where no link differs from the URDF (nats). Source: an arm that holds three joints still, simulated with another engine,
 /// whose links are all wrong by 3 %, where the difference is 4 and 6; with exact links it is 20 and more.
 pub const AS_LIKELY_BESIDE_EXACT: f64 = 6.0;
 /// A correction of the columns that has less evidence than another one by this much (nats), beside the background of the other one,

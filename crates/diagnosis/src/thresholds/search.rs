@@ -92,7 +92,7 @@ pub const REFINED_ONSET: f64 = 0.4;
 pub const OTHER_FORM_SIZES: [f64; 3] = [0.7, 1.0, 1.4];
 /// The largest number of consecutive swaps. Source: first diagnosis.
 pub const MOST_SWAPS: usize = 4;
-/// The largest number of last additions. Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.
+/// The largest number of candidates that are added in the last round of the search. Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.
 pub const MOST_LAST: usize = 3;
 /// The number of last joints on which the torque of a payload must show. There are two, because the axis of one may go
 /// through its centre of mass. Source: as for `FELT`.

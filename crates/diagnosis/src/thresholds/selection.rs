@@ -81,7 +81,7 @@ pub const CHANGE_OVER_VARIATION: f64 = 30.0;
 /// The evidence of a payload beside links of which only some differ from the URDF, compared with links that all do (nats). Source: two
 /// simulated arms without a payload whose links are all wrong, where it was 6 and 22.
 pub const LEAST_BESIDE_SOME_LINKS: f64 = 30.0;
-/// The search is not repeated after the final fit has refused this number of names.
+/// The search is not repeated once the final fit has refused more than this number of names. Source: none; it bounds the time.
 pub const MOST_REFUSED: usize = 3;
 /// A time is outside the 95 % interval of an onset if the fit is worse by this with an onset at that time (nats). Source:
 /// half the square of 1.96, doubled because of the correlation of residuals and the reach of the filter.
@@ -98,7 +98,7 @@ pub const PUSH_START: f64 = 0.1;
 /// arm of seven axes.
 pub const NEARLY_ALL: f64 = 0.7;
 /// The least mass of a missing tool, as a part of the last link's mass in the URDF with its tool. A URDF may be wrong
-/// by less without a missing tool. Source: lifelike as built, seed 3, in which a smaller one was named falsely.
+/// by less without a missing tool. Source: the shared lifelike cases with URDFs made wrong by `as_built.py`, seed 3, in which a smaller one was named falsely.
 pub const LEAST_OF_THE_LINK: f64 = 0.3;
 /// The mass of a payload, as a part of the last link's mass in the URDF, below which it needs [`LEAST_BESIDE_SOME_LINKS`]. Source: of
 /// thirteen payloads in simulated cases, the smallest true one is 0.17 of it, and a false one 0.10.

@@ -26,7 +26,7 @@ static SPEC: Spec = Spec {
     meaning: "a spring on a lever that carries a part of the arm's weight (counterbalance)",
     distinguished_by: "slow sweeps over a large range, with the joints beyond it stretched and folded",
     formula: "A sin(q − q₀), A = K · anchor · lever",
-    sentence: "a spring on a lever with up to {amplitude}, in line at {angle}",
+    sentence: "a spring on a lever with a torque of at most {amplitude}, which is zero at {angle}",
     parameters: &[
         Parameter::new("amplitude", Quantity::Torque).within(Range::NotNegative),
         Parameter::new("angle", Quantity::Position),

@@ -13,7 +13,7 @@ pub struct TorqueOffset;
 /// The experiment that distinguishes offset and scale of a torque where no motion does.
 pub(super) const KNOWN_LOAD: Experiment = Experiment {
     rank: 5,
-    text: "read the torque under a known load at rest, once on either side of upright: offset and scale show there",
+    text: "read the torque under a known load at rest, in two poses in which gravity acts in opposite senses: their mean shows the offset, their difference the scale",
 };
 
 static SPEC: Spec = Spec {

@@ -101,7 +101,8 @@ fn what_changed_comes_first() {
         before.to_owned()
     };
     let new = "joint <a>: a spring, absent in the recordings from before".to_owned();
-    let said = "Since the recordings from before, this changed: joint &lt;a&gt;: a spring, absent in the recordings from before.";
+    let said =
+        "Changed since the recordings from before: joint &lt;a&gt;: a spring, absent in the recordings from before.";
     assert!(first(Some(vec![new])).contains(said));
     assert!(first(Some(Vec::new())).contains("Since the recordings from before, no change was found."));
     assert!(!first(None).contains("Since the recordings"));

@@ -198,9 +198,7 @@ fn the_first_sentence_states_little_explanation_and_missing_validation() {
         ),
         (
             0.95,
-            format!(
-                "agrees with the recordings as far as their noise shows, which is 0.95 times the torque's standard deviation on {name}."
-            ),
+            format!("leaves a residual that looks like noise, of 0.95 times the torque's standard deviation ({name})."),
         ),
     ] {
         for fit in report.fit.values_mut() {

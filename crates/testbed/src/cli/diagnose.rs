@@ -9,8 +9,22 @@ use study::{Known, Request};
 use super::chain::ChainArgs;
 use super::numbers::{parse_accuracy, parse_frequency, parse_lag};
 use super::rerun::{Rerun, parse_rerun};
-use crate::diagnose::residuals_mark;
 use crate::output::{self, OutputFile};
+
+/// The creator of Parquet files of `--residuals`.
+pub const RESIDUALS_CREATOR: &str = "testbed residuals";
+
+/// By which an earlier file of `--residuals` at `path` is recognised.
+fn residuals_mark(path: &Path) -> &'static str {
+    let is_parquet = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"));
+    if is_parquet {
+        RESIDUALS_CREATOR
+    } else {
+        "recording,held_out,t,measured_"
+    }
+}
 
 /// The catalogue's effects with their meanings, each wrapped beside its name.
 fn effects_help() -> String {
@@ -114,8 +128,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub mjcf: Option<PathBuf>,
 
-    /// Which friction in the URDF (its "dynamics" tags) is known friction, that is already part of the model. In most URDFs it is a
-    /// placeholder
+    /// Which friction of the URDF (its "dynamics" tags) counts as part of the model. In most URDFs it is a placeholder
     #[arg(long, value_enum, default_value = "diagnosed")]
     pub urdf_friction: UrdfFriction,
 
@@ -148,7 +161,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "HZ", value_parser = parse_frequency, allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
 
-    /// The lag of all recorded torques behind the positions, which is removed (s) [default: the one on which the joints agree, if they do]
+    /// The lag of all recorded torques behind the positions, which is removed (s) [default: estimated if the joints agree on one, otherwise 0]
     #[arg(long, value_name = "S", value_parser = parse_lag, allow_negative_numbers = true)]
     pub torque_lag: Option<f64>,
 

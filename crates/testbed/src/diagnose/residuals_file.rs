@@ -13,6 +13,8 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
+use crate::cli::RESIDUALS_CREATOR;
+
 /// The format, by the ending of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -37,17 +39,6 @@ impl Kind {
                 path.display()
             ),
         }
-    }
-}
-
-/// The creator of Parquet files.
-const CREATED_BY: &str = concat!("testbed residuals ", env!("CARGO_PKG_VERSION"));
-
-/// By which an earlier file at `path` is recognised.
-pub fn mark(path: &Path) -> &'static str {
-    match Kind::of(path) {
-        Ok(Kind::Parquet) => "testbed residuals ",
-        _ => "recording,held_out,t,measured_",
     }
 }
 
@@ -155,7 +146,7 @@ fn parquet(joints: &[&str], traces: &Traces) -> anyhow::Result<Vec<u8>> {
     let schema = Type::group_type_builder("residuals").with_fields(fields).build()?;
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
-        .set_created_by(CREATED_BY.to_owned())
+        .set_created_by(format!("{RESIDUALS_CREATOR} {}", env!("CARGO_PKG_VERSION")))
         .build();
     let mut bytes = Vec::new();
     let mut writer = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;

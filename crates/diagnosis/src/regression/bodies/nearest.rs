@@ -128,8 +128,8 @@ mod tests {
         assert!((nearest - wanted).amax() < 1e-8, "{nearest}");
     }
 
-    /// On a SCARA arm, recordings determine Izz alone, and the other moments, which are estimated as those of nothing about the tool's
-    /// origin, become negative about the centre of mass.
+    /// On a SCARA arm, recordings determine Izz alone. The other moments are estimated as zero about the tool's origin, so that they are
+    /// negative about the centre of mass.
     #[test]
     fn a_determined_moment_is_kept_and_the_others_become_possible() {
         let wanted = tensor([-4e-3, 1e-3, -3e-3, 0.0, 0.0, 5e-3]);

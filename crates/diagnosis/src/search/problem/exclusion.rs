@@ -19,7 +19,8 @@ impl Problem<'_> {
             a.hypothesis.kind == b.hypothesis.kind && a.joint == b.joint,
         );
         if !when.is_like(then) {
-            // What begins or ends is in addition to what always acts. What ends and begins anew always acts, and changes.
+            // An effect that begins or ends may be in addition to one that always acts. One that ends and another that begins are described
+            // by one that always acts and a change of it.
             return is_one_effect && when != Acts::Always && then != Acts::Always;
         }
         let ([first, second], [one, other]) = (

@@ -31,9 +31,9 @@ impl About {
         collected(data, table, fit, f64::NEG_INFINITY).0.arm
     }
 
-    /// The arm of `data` with the effects of `fit`, where `load` is the tensor of a payload without moments in the fit, after each of their onsets: the times from which each one is right (s), ascending
-    /// from −∞ on. Torque constants, and other effects that depend on the joints' torques, then also act on the torque of a payload
-    /// that was picked up on the way.
+    /// The arm of `data` with the effects of `fit`, one for each stage between their onsets: the time at which the stage begins (s, the
+    /// first one at −∞), and its arm. `load` is the tensor of a payload whose moments are not fitted. Torque constants, and other effects
+    /// that depend on the joints' torques, thus also act on the torque of a payload that was picked up on the way.
     pub fn stages(data: &Data, table: &Table, fit: &Fit, load: &Matrix3<f64>) -> Vec<(f64, Self)> {
         let carried = |&column: &usize| table.terms[column].law.carry.is_some();
         let columns = fit.columns.iter().filter(|column| carried(column));

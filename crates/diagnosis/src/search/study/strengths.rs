@@ -192,7 +192,7 @@ impl Study {
         let mut best: Option<(Strengths, Selection)> = None;
         let mut hopeless: Vec<Part> = Vec::new();
         let weaker: Vec<Strengths> = self.stated.weaker(&self.strengths).collect();
-        // The strongest first: if effects do not nearly replace what it lacks, they do not replace more.
+        // The strongest first: if effects cannot replace a small part of the background, they cannot replace a larger one.
         for strengths in weaker.into_iter().rev() {
             let part = self.strengths.part_that_differs(&strengths);
             if hopeless.contains(&part) {

@@ -41,8 +41,8 @@ pub fn predicting(problem: &Problem<'_>, held: &Products, mut selected: Selectio
     }
 }
 
-/// The effect that does most harm to the prediction of recordings that it was not fitted to, if one makes it worse than without it, or
-/// a joint's worse than the nominal model's; with the rule that removes it.
+/// The effect whose removal improves the prediction of the held-out recordings most, with the rule that removes it. `None` if no removal
+/// improves it, and no joint is predicted worse than by the nominal model.
 pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> Option<(&'static str, usize)> {
     let table = problem.table;
     let rss = |selected: &Selection| held.rss(table, &selected.fit.columns, &selected.fit.coefficients);
