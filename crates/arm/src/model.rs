@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::chain::FixedJoint;
 use crate::inertia::Inertia;
-use crate::joint::Joint;
+use crate::joint::{Joint, JointKind};
 use crate::pose::Pose;
 use crate::visual::Visual;
 
@@ -104,6 +104,25 @@ impl Arm {
     /// Gravitational acceleration in the base frame (m/s²), by default 9.81 along −z.
     pub fn gravity(&self) -> &Vector3<f64> {
         &self.gravity
+    }
+
+    /// The links whose centre of mass is exactly at the origin of their own frame, each with its length from there to the next joint or the
+    /// tool (m): in most URDFs a placeholder, and the true one is somewhere along the link. Links shorter than `least` (m) are left out, and
+    /// so is a first link about a vertical axis, of which only the moment of inertia counts.
+    pub fn placeholders(&self, least: f64) -> Vec<(usize, f64)> {
+        let tool = self.tool_frame();
+        let ends = self.joints[1..].iter().map(|next| &next.parent_from_joint);
+        let ends = ends.chain(std::iter::once(&tool.link_from_frame));
+        let lengths = ends.map(|end| end.translation.norm()).enumerate();
+        let first = &self.joints[0];
+        let axis = first.parent_from_joint.rotation * first.axis;
+        let is_upright = axis.cross(&self.gravity).norm() < 1e-3 * self.gravity.norm();
+        let is_placeholder = |&(link, length): &(usize, f64)| {
+            let body = &self.joints[link].inertia;
+            let counts = link > 0 || !(is_upright && first.kind == JointKind::Revolute);
+            counts && body.mass > 0.0 && body.com == Vector3::zeros() && length > least
+        };
+        lengths.filter(is_placeholder).collect()
     }
 
     /// Doubtful values in the URDF that were accepted.

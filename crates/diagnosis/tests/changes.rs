@@ -159,7 +159,7 @@ fn a_joint_that_moves_on_one_side_only_is_noted() {
         }
         baseline_friction(motion, tau);
     });
-    let expected = "(does not move in the recordings from before: elbow)";
+    let expected = "(joints that do not move in the recordings from before: elbow)";
     let is_noted = diagnosis.remarks.iter().any(|remark| remark.ends_with(expected));
     assert!(is_noted, "{:?}", diagnosis.remarks);
 }

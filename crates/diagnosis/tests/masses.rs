@@ -358,3 +358,34 @@ fn a_determined_moment_of_a_load_is_exported() {
         );
     }
 }
+
+/// A centre of mass exactly at the joint is a placeholder, so that no effect is named in the place of the true one; a note says so.
+#[test]
+fn a_placeholder_is_not_believed() {
+    let placeholder = |arm: Arm, link: usize| {
+        let body = Inertia {
+            com: Vector3::zeros(),
+            ..arm.joints()[link].inertia
+        };
+        arm.with_link_inertia(link, body)
+    };
+    let urdf = support::TRIO.replace("</robot>", "<link name=\"tool\"/><joint name=\"tip\" type=\"fixed\"><parent link=\"fore\"/><child link=\"tool\"/><origin xyz=\"0.3 0 0\"/></joint></robot>");
+    let robot = Arm::from_urdf_text(&urdf, "trio.urdf").expect("it is an arm");
+    let believed = placeholder(placeholder(robot.clone(), support::SHOULDER), support::ELBOW);
+    let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
+    let diagnosis = diagnosed(&believed, &robot, &friction, Vec::new());
+    let named = support::named(&diagnosis);
+    assert!(
+        named.iter().all(|(effect, _)| *effect == "inertial_parameters"),
+        "{named:?}"
+    );
+    let is_noted = |note: &&String| note.contains("exactly at the joint on upper and fore");
+    assert!(
+        diagnosis.remarks.iter().any(|note| is_noted(&note)),
+        "{:?}",
+        diagnosis.remarks
+    );
+
+    let exact = diagnosed(&robot, &robot, &friction, Vec::new());
+    assert!(!exact.remarks.iter().any(|note| note.contains("exactly at the joint")));
+}

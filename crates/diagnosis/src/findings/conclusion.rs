@@ -149,6 +149,7 @@ impl Conclusion {
             no_motion,
             links_not_named,
             sentences::not_compared(data),
+            sentences::placeholders(&data.arm, &study.strengths.least),
             torque_constants::note_on_unnamed(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];

@@ -149,7 +149,7 @@ fn as_last_link(last: &FinalFit, candidate: usize) -> Option<Rival> {
     let study = &last.study;
     let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
     let links = Hypothesis::of(&InertialParameters);
-    let is_wrong = study.strengths.links.iter().any(|&rho| rho > 0.0);
+    let is_wrong = study.strengths.strongest() > 0.0;
     (is_payload && study.always_acts(candidate) && is_wrong).then(|| (links, study.data.arm.dof().checked_sub(1)))
 }
 

@@ -16,7 +16,7 @@ use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
 use crate::selection::special_forms::{in_place_of_link, special_forms};
 use crate::thresholds::{
-    LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC,
+    LEAST_BODY_RADIUS, LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC,
 };
 
 /// The links that differ from the URDF.
@@ -93,7 +93,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
     } = last;
     let (data, table, strengths) = (&study.data, &study.table, &study.strengths);
     let dof = data.arm.dof();
-    if strengths.links.iter().all(|&rho| rho == 0.0) {
+    if strengths.strongest() == 0.0 {
         return Inertials::default();
     }
     // The links with their scale errors, without payload, tilt and other effects.
@@ -113,7 +113,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
             std::array::from_fn(|parameter| places[parameter].map_or(0.0, |place| draw[place]))
         };
         let of = &nominal[link * PER_LINK..(link + 1) * PER_LINK];
-        let own = |draw: &[f64]| body(&physical(of, &read(draw)));
+        let own = |draw: &[f64]| body(&physical(of, LEAST_BODY_RADIUS, &read(draw)));
         let estimate = own(&resampled.estimate);
         let name = data.arm.joints()[link].name.clone();
         list.effects.push(InertialParameters::effect(name.clone(), &estimate));
@@ -159,8 +159,11 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         return list;
     }
     let common = strengths.common();
+    // The evidence has not selected that a placeholder is wrong.
+    let is_selected = |link: usize| strengths.links[link] > LINK_STANDS_OUT * common;
+    let is_evident = |link: usize| study.evidence_of_link(&judged.named, link)[0] >= study.thresholds.least_evidence;
     let apart: Vec<usize> = (0..dof)
-        .filter(|&link| strengths.links[link] > LINK_STANDS_OUT * common)
+        .filter(|&link| strengths.of_link(link) > LINK_STANDS_OUT * common && (is_selected(link) || is_evident(link)))
         .collect();
     let together: Vec<f64> = (0..dof)
         .map(|joint| {

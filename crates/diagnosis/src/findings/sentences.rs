@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use arm::Arm;
 use effects::arm::InertialParameters;
 use effects::{Effect, Regressor};
 
@@ -137,6 +138,19 @@ pub fn not_compared(data: &Data) -> Option<String> {
         format!(
             "changes of the friction and the drives of some joints are not testable ({})",
             parts.join("; ")
+        )
+    })
+}
+
+/// A note on the links whose centre of mass is not taken from the URDF, which are those with a `least` deviation; `None` if there are none.
+pub fn placeholders(arm: &Arm, least: &[f64]) -> Option<String> {
+    let links = arm.joints().iter().zip(least).filter(|(_, least)| **least > 0.0);
+    let names: Vec<&str> = links.map(|(joint, _)| joint.link_name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the URDF has the centre of mass exactly at the joint on {}, which is a placeholder in most URDFs: it is taken as \
+             unknown along the link, so that a payload may be undetermined; correct it, or state --urdf-accuracy if it is true",
+            list(&names)
         )
     })
 }

@@ -23,6 +23,8 @@ pub struct Prior {
     terms: Vec<Term>,
     /// The inertial parameters of the URDF's links, ten per link.
     nominal: Vec<f64>,
+    /// The least radius of gyration about which each link may have (m).
+    radii: Vec<f64>,
     /// The prior of each link's inertial parameters, about the bodies of the last fit.
     links: Vec<Quadratic>,
     /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
@@ -49,12 +51,13 @@ pub struct Background {
 }
 
 impl Prior {
-    /// The prior for an arm with the inertial `parameters` (ten per link). The torques of its joints have the standard
+    /// The prior for an arm with the inertial `parameters` (ten per link) and the least `radii` of gyration about which they may have. The torques of its joints have the standard
     /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
     /// move each joint. A load that some recordings have of their own has ten inertial parameters with the standard deviations
     /// `own_load`.
     pub fn new(
         parameters: &[f64],
+        radii: &[f64],
         torque: &[f64],
         speed: &[f64],
         moved: &[Vec<usize>],
@@ -62,6 +65,7 @@ impl Prior {
     ) -> Self {
         let mut prior = Self {
             nominal: parameters.to_vec(),
+            radii: radii.to_vec(),
             ..Self::default()
         };
         prior.set_bodies(&vec![0.0; parameters.len()]);
@@ -98,7 +102,10 @@ impl Prior {
     /// Makes the prior quadratic about the bodies of a fit, which change the inertial parameters by `changes` (ten per link).
     pub fn set_bodies(&mut self, changes: &[f64]) {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
-        self.links = links.map(|(nominal, change)| prior_about(nominal, change)).collect();
+        self.links = links
+            .zip(&self.radii)
+            .map(|((nominal, change), &radius)| prior_about(nominal, radius, change))
+            .collect();
         self.identity = Arc::default();
     }
 
@@ -106,11 +113,11 @@ impl Prior {
     /// as changes.
     pub fn possible(&self, changes: &[f64]) -> Vec<f64> {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
-        let change = |(nominal, change): (&[f64], &[f64])| {
-            let body = physical(nominal, change);
+        let change = |((nominal, change), &radius): ((&[f64], &[f64]), &f64)| {
+            let body = physical(nominal, radius, change);
             (0..PER_LINK).map(|k| body[k] - nominal[k]).collect::<Vec<f64>>()
         };
-        links.flat_map(change).collect()
+        links.zip(&self.radii).flat_map(change).collect()
     }
 
     /// The next bodies on the way from the physically possible bodies `from` to those of a fit, `to`, as changes of the URDF's inertial
@@ -125,7 +132,8 @@ impl Prior {
                 .zip(step.chunks_exact(PER_LINK))
         };
         let part = links()
-            .map(|((nominal, from), step)| possible_part(nominal, from, step))
+            .zip(&self.radii)
+            .map(|(((nominal, from), step), &radius)| possible_part(nominal, radius, from, step))
             .fold(1.0, f64::min);
         let lengths = self.links.iter().zip(step.chunks_exact(PER_LINK)).map(|(prior, step)| {
             let step = DVector::from_column_slice(step);
@@ -172,7 +180,7 @@ impl Prior {
         }
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&OWN_LOAD) => 1.0,
-            term if term.is(&INERTIAL_PARAMETER) => strengths.links[term.of[0]],
+            term if term.is(&INERTIAL_PARAMETER) => strengths.of_link(term.of[0]),
             term if term.is(&GAIN_LAW) => {
                 let is_left_out = |joint: usize| {
                     strengths.named_constants.contains(&joint) || strengths.impossible_constants.contains(&joint)
@@ -204,7 +212,7 @@ impl Prior {
             let (one, other) = (self.terms[a], self.terms[b]);
             let are_inertial = one.is(&INERTIAL_PARAMETER) && other.is(&INERTIAL_PARAMETER);
             if are_inertial && one.of[0] == other.of[0] {
-                self.links[one.of[0]].precision[(one.of[1], other.of[1])] / strengths.links[one.of[0]].powi(2)
+                self.links[one.of[0]].precision[(one.of[1], other.of[1])] / strengths.of_link(one.of[0]).powi(2)
             } else if a == b {
                 (strength(a) * self.deviations[a]).powi(-2)
             } else {

@@ -12,6 +12,8 @@ use crate::thresholds::{
 pub struct Strengths {
     /// ρ of each link's inertial parameters.
     pub links: Vec<f64>,
+    /// The least ρ of each link, whatever the evidence prefers: the centre of mass of some links is a placeholder.
+    pub least: Vec<f64>,
     /// The form of each joint's friction, relative to its prior.
     pub friction: f64,
     /// The constant torques of the joints, relative to their prior.
@@ -65,6 +67,7 @@ impl Strengths {
     pub fn none(links: usize) -> Self {
         Self {
             links: vec![0.0; links],
+            least: vec![0.0; links],
             friction: 0.0,
             offset: 0.0,
             gain: 0.0,
@@ -72,6 +75,34 @@ impl Strengths {
             nameless_offsets: Vec::new(),
             named_constants: Vec::new(),
             impossible_constants: Vec::new(),
+        }
+    }
+
+    /// ρ of a link.
+    pub fn of_link(&self, link: usize) -> f64 {
+        self.links[link].max(self.least[link])
+    }
+
+    /// ρ of the link that differs most.
+    pub fn strongest(&self) -> f64 {
+        (0..self.links.len()).fold(0.0, |most: f64, link| most.max(self.of_link(link)))
+    }
+
+    /// These strengths with a link that differs from the URDF no more than most.
+    #[must_use]
+    pub fn with_link_as_most(&self, link: usize) -> Self {
+        let mut next = self.clone();
+        (next.links[link], next.least[link]) = (self.common(), 0.0);
+        next
+    }
+
+    /// These strengths with the URDF's links.
+    #[must_use]
+    pub fn with_exact_links(&self) -> Self {
+        Self {
+            links: vec![0.0; self.links.len()],
+            least: vec![0.0; self.links.len()],
+            ..self.clone()
         }
     }
 
@@ -261,10 +292,7 @@ impl Strengths {
 
     /// Whether there is no background.
     pub fn is_none(&self) -> bool {
-        !self.is_of_joints()
-            && self.offset == 0.0
-            && self.nameless_offsets.is_empty()
-            && self.links.iter().all(|&rho| rho == 0.0)
+        !self.is_of_joints() && self.offset == 0.0 && self.nameless_offsets.is_empty() && self.strongest() == 0.0
     }
 }
 

@@ -13,7 +13,9 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         .filter(|&c| study.candidates[c].hypothesis.spec().is_friction && study.always_acts(c))
         .collect();
     let products = study.training_products();
-    let mut selected = study.problem(&products).choose(baseline, &products.first_weights());
+    // With a background that is stated, or of placeholders, the weights are not recomputed by themselves.
+    let problem = study.problem(&products);
+    let mut selected = problem.reweighted(problem.choose(baseline, &products.first_weights()));
     for round in 1..=MOST_SUGGESTIONS {
         progress(Step::new(
             0.12 + 0.08 * round as f64,

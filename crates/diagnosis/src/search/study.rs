@@ -21,7 +21,7 @@ use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::own_load::OwnLoad;
 use crate::search::problem::Problem;
 use crate::search::scope::Scope;
-use crate::thresholds::{LEAST_FOR_DYNAMICS, Thresholds};
+use crate::thresholds::{LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, OF_PLACEHOLDERS, Thresholds};
 use crate::trace::Trace;
 
 mod about;
@@ -147,8 +147,20 @@ impl Study {
             .collect();
         let first = times.first().map_or(0.0, |span| span.0);
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
+        let placeholders = if stated.links.is_none() {
+            arm.placeholders(LEAST_BODY_RADIUS)
+        } else {
+            Vec::new()
+        };
+        let mut radii = vec![LEAST_BODY_RADIUS; arm.dof()];
+        let mut least = vec![0.0; arm.dof()];
+        for (link, length) in placeholders {
+            radii[link] = length;
+            least[link] = OF_PLACEHOLDERS;
+        }
         let prior = Prior::new(
             &arm.inertial_parameters(),
+            &radii,
             &scales.torque,
             &scales.speed,
             &moved(motions, scales),
@@ -215,7 +227,10 @@ impl Study {
             simulated_along: vec![None; motions.dof],
             carries: false,
             moving: Moving::Steadily,
-            strengths: stated.first(arm.dof()),
+            strengths: Strengths {
+                least,
+                ..stated.first(arm.dof())
+            },
             preferred: None,
             stated,
             thresholds,

@@ -43,8 +43,8 @@ impl Reader<'_> {
 
     /// The relative error of the URDF's links that the joint moves, according to the strengths of the background.
     fn links_wrong_by(&self) -> f64 {
-        let moved = self.study.strengths.links.iter().skip(self.joint());
-        moved.fold(0.0, |most: f64, &strength| most.max(strength))
+        let strengths = &self.study.strengths;
+        (self.joint()..strengths.links.len()).fold(0.0, |most: f64, link| most.max(strengths.of_link(link)))
     }
 }
 

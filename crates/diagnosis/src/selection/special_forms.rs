@@ -43,8 +43,7 @@ pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
 /// The special forms that are nearly as likely as a `link` that differs more than most links, beside one that does not: each with its
 /// score beyond that of `selected` (nats), the most likely first.
 pub fn in_place_of_link(study: &Study, selected: &Selection, link: usize) -> Vec<(f64, Rival)> {
-    let mut strengths = study.strengths.clone();
-    strengths.links[link] = strengths.common();
+    let strengths = study.strengths.with_link_as_most(link);
     let mut forms: Vec<(f64, Rival)> = beside(study, selected, &strengths)
         .into_iter()
         .filter(|(next, _)| is_nearly_as_good(next, selected))

@@ -111,7 +111,7 @@ impl Study {
 
     /// `selected` with the prior expanded about the bodies of its own fit, which are physically possible then: the most probable ones.
     fn with_possible_bodies(&mut self, mut selected: Selection) -> Selection {
-        let strongest = self.strengths.links.iter().copied().fold(0.0, f64::max);
+        let strongest = self.strengths.strongest();
         if strongest == 0.0 {
             return selected;
         }
@@ -328,7 +328,10 @@ impl Study {
     /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
-        self.strengths = self.stated.first(self.data.arm.dof());
+        self.strengths = Strengths {
+            least: self.strengths.least.clone(),
+            ..self.stated.first(self.data.arm.dof())
+        };
         let products = self.training_products();
         let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
         self.about(&nothing.fit, &[], true);

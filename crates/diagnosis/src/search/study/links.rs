@@ -10,25 +10,21 @@ use crate::thresholds::GAIN_STRENGTHS;
 impl Study {
     /// The loss of score and likelihood of `selected` (nats) if `link` differs from the URDF no more than most links.
     pub fn evidence_of_link(&self, selected: &Selection, link: usize) -> [f64; 2] {
-        let mut links = self.strengths.links.clone();
-        links[link] = self.strengths.common();
-        let (_, without) = self.with_links(selected, links);
+        let (_, without) = self.beside(selected, &self.strengths.with_link_as_most(link));
         [without.score - selected.score, without.fit.loss - selected.fit.loss]
     }
 
     /// The loss of score of `selected` (nats) if torque constants deviate in the place of `link`, and `link` differs from the URDF no more
     /// than most links. Without a link, no link differs from the URDF.
     pub fn in_torque_constants(&self, selected: &Selection, link: Option<usize>) -> f64 {
-        let mut links = self.strengths.links.clone();
-        match link {
-            Some(link) => links[link] = self.strengths.common(),
-            None => links.fill(0.0),
-        }
+        let without = link.map_or_else(
+            || self.strengths.with_exact_links(),
+            |link| self.strengths.with_link_as_most(link),
+        );
         let loss = |gain: f64| {
             let strengths = Strengths {
-                links: links.clone(),
                 gain,
-                ..self.strengths.clone()
+                ..without.clone()
             };
             let products = self.products_at(&strengths);
             let problem = self.problem(&products);
@@ -43,14 +39,14 @@ impl Study {
     /// (nats).
     pub fn in_other_links(&self, selected: &Selection, link: usize) -> Vec<(usize, [f64; 2])> {
         let common = self.strengths.common();
-        let as_most = |&other: &usize| self.strengths.links[other] == common;
+        let as_most = |&other: &usize| self.strengths.of_link(other) == common;
         let others: Vec<usize> = (0..self.data.arm.dof()).filter(as_most).collect();
         others
             .into_par_iter()
             .map(|other| {
-                let mut links = self.strengths.links.clone();
-                links.swap(link, other);
-                let (_, instead) = self.with_links(selected, links);
+                let mut strengths = self.strengths.with_link_as_most(link);
+                strengths.links[other] = self.strengths.of_link(link);
+                let (_, instead) = self.beside(selected, &strengths);
                 (
                     other,
                     [instead.score - selected.score, instead.fit.loss - selected.fit.loss],

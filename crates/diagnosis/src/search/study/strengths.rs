@@ -49,27 +49,22 @@ impl Study {
 
     /// The prior variances of a link's ten inertial parameters, at the strength selected by evidence.
     pub fn prior_variances(&self, link: usize) -> [f64; PER_LINK] {
-        self.prior.variances(link, self.strengths.links[link])
+        self.prior.variances(link, self.strengths.of_link(link))
     }
 
     /// The loss of the score of `selected`, and of the likelihood of the held-out recordings, if all links have the URDF's
     /// inertial parameters (nats).
     pub fn evidence_of_inertials(&self, held: Option<&Products>, selected: &Selection) -> (f64, Option<f64>) {
-        let links = vec![0.0; self.data.arm.dof()];
-        let (products, without) = self.with_links(selected, links);
+        let (products, without) = self.beside(selected, &self.strengths.with_exact_links());
         let without = self.problem(&products).reweighted(without);
         let outside =
             held.map(|held| held.loss_of(&self.table, &without.fit) - held.loss_of(&self.table, &selected.fit));
         (without.score - selected.score, outside)
     }
 
-    /// The products and the fit of `selected` with other strengths of the links' inertial parameters.
-    pub(super) fn with_links(&self, selected: &Selection, links: Vec<f64>) -> (Products, Selection) {
-        let strengths = Strengths {
-            links,
-            ..self.strengths.clone()
-        };
-        let products = self.products_at(&strengths);
+    /// The products and the fit of `selected` beside a background of these strengths.
+    pub(super) fn beside(&self, selected: &Selection, strengths: &Strengths) -> (Products, Selection) {
+        let products = self.products_at(strengths);
         let next = self
             .problem(&products)
             .choose(selected.set.clone(), &selected.fit.weights);
@@ -123,11 +118,11 @@ impl Study {
         }
         let at_least = |least: f64| {
             let links: Vec<f64> = links.iter().map(|&rho| rho.max(least)).collect();
-            let (_, next) = self.with_links(selected, links.clone());
             let strengths = Strengths {
                 links,
                 ..self.strengths.clone()
             };
+            let (_, next) = self.beside(selected, &strengths);
             (strengths, next)
         };
         let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
