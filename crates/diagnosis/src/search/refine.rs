@@ -11,8 +11,15 @@ use crate::thresholds::{FINER_STEPS, OTHER_FORM_SIZES, REFINED_ONSET, REFINED_SI
 
 /// The sizes of terms that have intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
-    [Size::Main, Size::Damping, Size::Stop, Size::Periods, Size::Duration]
-        .into_iter()
+    let all = [
+        Size::Main,
+        Size::Exponent,
+        Size::Damping,
+        Size::Stop,
+        Size::Periods,
+        Size::Duration,
+    ];
+    all.into_iter()
         .filter(|&size| varied(terms, size, 1.01) != terms)
         .collect()
 }

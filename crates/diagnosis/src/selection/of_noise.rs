@@ -5,7 +5,7 @@ use effects::drive::JointElasticity;
 use crate::data::statistics::mean;
 use crate::search::candidate::Candidate;
 use crate::search::study::Study;
-use crate::thresholds::{BEYOND_NOISE, NOISE_OF_A_SPRING};
+use crate::thresholds::{BEYOND_NOISE, NOISE_BESIDE_LINKS, NOISE_OF_A_SPRING};
 
 /// The variance of the noise in the first column of `candidate` on its joint, from that of the recorded positions (N² m² or N²).
 pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
@@ -40,5 +40,10 @@ pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     let variance = column.map_or(0.0, |column| {
         study.table.spread(joint, &study.data.fitted, column).powi(2)
     });
-    noise(study, candidate, joint) > NOISE_OF_A_SPRING * variance
+    let most = if study.strengths.common() > 0.0 {
+        NOISE_BESIDE_LINKS
+    } else {
+        NOISE_OF_A_SPRING
+    };
+    noise(study, candidate, joint) > most * variance
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
-    Quantity, Range, SetsIn, Size, Spec, State, Term, Turn,
+    Quantity, Range, SetsIn, Size, Spec, State, Systematic, Term, Turn,
 };
 
 /// τ = coefficient |q̇|^exponent sgn q̇.
@@ -15,7 +15,7 @@ static SPEC: Spec = Spec {
     meaning: "a torque against the motion that grows with the square of its speed",
     distinguished_by: "a wider range of speeds",
     formula: "c |q̇|ᵖ sgn q̇; the exponent p is about 2 and is fitted between 1.4 and 3.2",
-    sentence: "quadratic drag of {coefficient}",
+    sentence: "drag that grows with the speed to the power of {exponent}, with a coefficient of {coefficient}",
     parameters: &[
         Parameter::new("coefficient", Quantity::Drag).within(Range::NotNegative),
         Parameter::new("exponent", Quantity::Ratio).or(2.0).remarked(""),
@@ -75,6 +75,7 @@ impl EffectKind for QuadraticDrag {
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let exponent = estimate.terms().first()?.sizes[0];
         let coefficient = estimate.coefficient("coefficient", estimate.place(0), 1.0);
+        let exponent = estimate.size(Systematic::OfForm, "exponent", Size::Exponent, exponent);
         let onset = estimate.onset();
         let effect = Effect::of(&Self).on(estimate.joint_name()).since(onset);
         Some(effect.with("coefficient", coefficient).with("exponent", exponent))
