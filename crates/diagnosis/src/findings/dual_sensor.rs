@@ -209,6 +209,9 @@ fn deflection(data: &Data, joint: usize, inputs: &[Input<'_>]) -> Option<Finding
 const BY_SECOND_ENCODER: (&str, &str) = (SECOND_ENCODER, "between the two encoders");
 const BY_MOTOR_CURRENT: (&str, &str) = (MOTOR_CURRENT, "between the motor's current and the torque sensor");
 
+/// Two columns are one signal if they differ by no more than this part of its largest value, for rounding.
+const SAME_SIGNAL: f64 = 1e-9;
+
 /// Friction between the motor's current and the torque sensor.
 fn between_current_and_sensor(data: &Data, joint: usize, inputs: &[Input<'_>]) -> Vec<Finding> {
     let rows = gather(data, joint, inputs, |input, filter| {
@@ -216,7 +219,8 @@ fn between_current_and_sensor(data: &Data, joint: usize, inputs: &[Input<'_>]) -
         let sensor = &input.recording.tau[joint];
         let difference: Vec<f64> = current.iter().zip(sensor).map(|(a, b)| a - b).collect();
         // If both columns are the same signal, no friction is between them.
-        if difference.iter().all(|d| d.abs() < 1e-9) {
+        let largest = sensor.iter().fold(0.0, |most: f64, tau| most.max(tau.abs()));
+        if difference.iter().all(|d| d.abs() <= SAME_SIGNAL * largest) {
             return None;
         }
         let y = filter(&difference, Order::Value);
