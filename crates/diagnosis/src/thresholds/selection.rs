@@ -11,7 +11,8 @@ pub const LEAST_DRIVE: f64 = 0.01;
 /// that were found, three have more and less than 200 nats; they are small effects beside the injected ones).
 pub const NOISE_OF_A_SPRING: f64 = 0.09;
 /// As [`NOISE_OF_A_SPRING`], beside links that are all wrong. Source: 14 springs that were named on rigid joints of an iiwa, a Panda and an
-/// xArm with URDFs of other publishers (0.036 to 0.33), and 22 true ones of `prove`, seeds 28112026 to 28112030 (0.009 at most).
+/// xArm with URDFs of other publishers (0.036 to 0.33), and 24 true ones of `prove`, seeds 28112026
+/// to 28112030 (0.009 at most); two small true ones of seed 28112031 have 0.05 and 0.08.
 pub const NOISE_BESIDE_LINKS: f64 = 0.03;
 /// The evidence with which a spring is named nevertheless (nats). Source: as for [`NOISE_OF_A_SPRING`] and [`NOISE_BESIDE_LINKS`]; the
 /// false ones had 282 at most.
