@@ -386,6 +386,17 @@ fn a_placeholder_is_not_believed() {
         diagnosis.remarks
     );
 
+    // An accuracy of the URDF does not make a placeholder true; an exact URDF does.
+    for (accuracy, is_noted) in [(0.1, true), (0.0, false)] {
+        let options = Options {
+            urdf_accuracy: Some(accuracy),
+            ..Options::default()
+        };
+        let stated = diagnosed_with(&believed, &robot, &friction, &options).expect("it can be diagnosed");
+        let has_note = stated.remarks.iter().any(|note| note.contains("exactly at the joint"));
+        assert_eq!(has_note, is_noted, "{accuracy}");
+    }
+
     let exact = diagnosed(&robot, &robot, &friction, Vec::new());
     assert!(!exact.remarks.iter().any(|note| note.contains("exactly at the joint")));
 }

@@ -149,7 +149,7 @@ pub fn placeholders(arm: &Arm, least: &[f64]) -> Option<String> {
     (!names.is_empty()).then(|| {
         format!(
             "the URDF has the centre of mass exactly at the joint on {}, which is a placeholder in most URDFs: it is taken as \
-             unknown along the link, so that a payload may be undetermined; correct it, or state --urdf-accuracy if it is true",
+             unknown along the link, so that a payload may be undetermined; correct it; if it is true, write 1e-6 in the place of a 0",
             list(&names)
         )
     })

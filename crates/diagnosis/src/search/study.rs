@@ -147,7 +147,7 @@ impl Study {
             .collect();
         let first = times.first().map_or(0.0, |span| span.0);
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
-        let placeholders = if stated.links.is_none() {
+        let placeholders = if stated.links != Some(0.0) {
             arm.placeholders(LEAST_BODY_RADIUS)
         } else {
             Vec::new()
