@@ -48,6 +48,9 @@ pub trait Estimate {
     /// The index in a draw of the relative correction of a size.
     fn size_place(&self, size: Size) -> Option<usize>;
 
+    /// The largest magnitude of the candidate's k-th column on the rows in motion; zero if it acts on several joints.
+    fn shown(&self, k: usize) -> f64;
+
     /// The lowest and the highest position of the candidate's joint in the recordings (rad or m).
     fn positions(&self) -> [f64; 2];
 
@@ -59,6 +62,9 @@ pub trait Estimate {
 
     /// Records a parameter that is a function of a draw, with its interval; returns its value.
     fn note_within(&mut self, systematic: Systematic, key: &'static str, f: &dyn Fn(&[f64]) -> f64) -> f64;
+
+    /// Extends the interval of a recorded parameter to a value that the recordings do not exclude.
+    fn extend(&mut self, key: &'static str, to: f64);
 
     /// Records and returns the onset of the candidate (s); `None` if it always acts.
     fn onset(&mut self) -> Option<f64>;

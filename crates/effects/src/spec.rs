@@ -289,17 +289,16 @@ pub struct Spec {
     pub may_be_inertial: bool,
     /// The effect with the same torque if this one acts on all joints.
     pub same_on_all_joints: Option<&'static str>,
-    /// Effects on the same joint, with the part of each that this one must exceed, because the error of their forms resembles
-    /// it.
+    /// Effects on its joint whose error of form resembles it, with the part of each that it must exceed.
     pub least_beside: &'static [(&'static str, f64)],
-    /// The multiple of the residual structure on its joint that it must exceed, if it may be a part of that structure; on any joint, for
-    /// an effect on the whole arm.
+    /// The multiple of the residual structure on its joint (of the whole arm: on any joint) that it must exceed, if it may be a part of it.
     pub least_beside_residual: Option<f64>,
-    /// Whether it is simulated at its size, so that its coefficient must be one. Its torque is not a function of the motion at
-    /// one time.
+    /// Whether it is simulated at its size, so that its coefficient must be one: its torque depends on earlier motion.
     pub is_simulated: bool,
     /// Whether it means that masses differ from the model's.
     pub is_wrong_mass: bool,
+    /// Whether it acts on the joints before its own too, so that it resembles the same effect of a neighbour.
+    pub acts_before_its_joint: bool,
     /// Whether it acts on the link side of an elastic drive.
     pub is_beyond_the_drive: bool,
     /// What a URDF can hold of it.
@@ -362,6 +361,7 @@ impl Spec {
         least_beside_residual: None,
         is_simulated: false,
         is_wrong_mass: false,
+        acts_before_its_joint: false,
         is_beyond_the_drive: false,
         in_urdf: InUrdf::Nothing,
         is_periodic: false,

@@ -83,6 +83,11 @@ impl Strengths {
         self.links[link].max(self.least[link])
     }
 
+    /// Whether the centre of mass of some link is a placeholder.
+    pub fn has_placeholders(&self) -> bool {
+        self.least.iter().any(|&least| least > 0.0)
+    }
+
     /// ρ of the link that differs most.
     pub fn strongest(&self) -> f64 {
         (0..self.links.len()).fold(0.0, |most: f64, link| most.max(self.of_link(link)))

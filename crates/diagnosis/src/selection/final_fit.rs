@@ -236,9 +236,9 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         if hypothesis.is(&Payload) && is_doubtful() && evidence(study) < LEAST_BESIDE_SOME_LINKS {
             return Some(("links that are wrong explain nearly as much in its place", true));
         }
-        // If most links agree with the URDF, one wrong link is an unlikely explanation.
+        // If most links agree with the URDF, one wrong link is an unlikely explanation. A URDF with placeholders is wrong.
         let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
-        let is_wrong = study.strengths.common().max(preferred) > 0.0;
+        let is_wrong = study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders();
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
         let size = judged
             .named

@@ -86,6 +86,17 @@ impl Estimate for Reader<'_> {
         self.resampled.size(self.candidate, size)
     }
 
+    fn shown(&self, k: usize) -> f64 {
+        let (table, joint) = (&self.study.table, self.joint());
+        let column = self.study.candidates[self.candidate].columns.get(k);
+        let place = column.and_then(|&column| table.place[joint][column]);
+        let Some(place) = place else { return 0.0 };
+        let of_joint = &table.joints[joint];
+        let rows = of_joint.x[place].iter().zip(&of_joint.moving);
+        rows.filter(|(_, moving)| **moving)
+            .fold(0.0, |most: f64, (x, _)| most.max(x.abs()))
+    }
+
     fn positions(&self) -> [f64; 2] {
         let (scales, joint) = (&self.study.data.scales, self.joint());
         let half = 0.5 * scales.range[joint];
@@ -121,6 +132,13 @@ impl Estimate for Reader<'_> {
         let unit = self.unit(key);
         self.parameters.insert(key, Parameter { value, ci95, unit });
         value
+    }
+
+    fn extend(&mut self, key: &'static str, to: f64) {
+        if let Some(parameter) = self.parameters.get_mut(key) {
+            let [low, high] = parameter.ci95;
+            parameter.ci95 = [low.min(to), high.max(to)];
+        }
     }
 
     fn onset(&mut self) -> Option<f64> {

@@ -105,13 +105,13 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         let same_name = other.hypothesis.name() == finding.hypothesis.name() && other.joint == finding.joint;
         // A candidate with all of the finding's columns and more is a finer form of it, not another hypothesis.
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
-        // The inertia of a body acts on all joints before it: a wrong mass of one link resembles one of its neighbour.
-        let are_links = finding.hypothesis.kind == other.hypothesis.kind && finding.hypothesis.spec().is_wrong_mass;
+        // A wrong mass of one link resembles one of its neighbour, and so does the encoder offset of a parallel axis.
+        let are_neighbours = finding.hypothesis == other.hypothesis && finding.hypothesis.spec().acts_before_its_joint;
         !same_name
             && !finer
             && !is_excluded
             && other.hypothesis.name().is_some()
-            && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none() || are_links)
+            && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none() || are_neighbours)
             && !set.iter().any(|&known| {
                 let known = &study.candidates[known];
                 known.hypothesis == other.hypothesis && known.joint == other.joint

@@ -23,6 +23,7 @@ static SPEC: Spec = Spec {
     is_certain_in_form: true,
     may_be_inertial: true,
     is_wrong_mass: true,
+    acts_before_its_joint: true,
     is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,
     ..Spec::EMPTY

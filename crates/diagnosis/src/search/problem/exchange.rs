@@ -91,14 +91,16 @@ impl Problem<'_> {
                         return None;
                     }
                     let without = self.without(&selected, removed);
-                    // The replacement acts where the member did.
+                    // The replacement acts where the member did, or is the same effect of another joint.
                     let others: Vec<usize> = allowed
                         .iter()
                         .copied()
                         .filter(|&c| c != removed)
                         .filter(|&c| {
-                            let joint = self.candidates[c].joint;
-                            joint == out.joint || joint.is_none() || out.joint.is_none()
+                            let other = &self.candidates[c];
+                            let is_neighbour =
+                                other.hypothesis == out.hypothesis && out.hypothesis.spec().acts_before_its_joint;
+                            other.joint == out.joint || other.joint.is_none() || out.joint.is_none() || is_neighbour
                         })
                         .collect();
                     self.grow(&without, &others, &mut Growth::default())
