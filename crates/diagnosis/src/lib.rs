@@ -51,7 +51,7 @@ pub use error::DiagnosisError;
 pub use excitation::{
     Determined, Excitation, ExcitationError, ExcitationOptions, JointUse, MotionLimits, Quality, excite, quality_of,
 };
-pub use findings::sentences::{described, is_undetermined};
+pub use findings::sentences::{Written, described, is_undetermined};
 pub use options::{Options, Step, Wanted};
 pub use report::*;
 pub use thresholds::{LEAST_ROWS, Thresholds, WORTH_HOLDING};

@@ -23,15 +23,13 @@ pub mod identified;
 pub mod judge;
 pub mod naming;
 pub mod of_noise;
-mod possible_load;
+pub mod payload;
 pub mod predict;
 pub mod rivals;
 pub mod special_forms;
 pub mod torque_constants;
 pub mod unclear;
-pub mod unmounted;
 mod variation;
-pub mod without_moment;
 
 /// The final fit: the named effects, their uncertainty, and the residuals.
 pub struct FinalFit {
@@ -118,7 +116,7 @@ fn found(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resa
         // A refused name may have prevented that another effect was found.
         if study.refused() == refused || refused > MOST_REFUSED {
             let resampled = direction::decide(study, &mut judged).unwrap_or(resampled);
-            let resampled = unmounted::unmounted(study, &mut judged).unwrap_or(resampled);
+            let resampled = payload::unmounted::unmounted(study, &mut judged).unwrap_or(resampled);
             return (judged, resampled);
         }
         study.restart();

@@ -186,7 +186,7 @@ mod tests {
             let count = |holds: &dyn Fn(&CasePlan) -> bool| plans.iter().filter(|plan| holds(plan)).count();
             assert_eq!(count(&|plan| plan.effects.is_empty()), 100);
             assert_eq!(
-                count(&|plan| plan.effects.iter().any(|name| name.ends_with("_unknown"))),
+                count(&|plan| plan.effects.iter().any(|name| crate::is_outside(name))),
                 30
             );
             assert_eq!(count(&|plan| plan.hard), 150);

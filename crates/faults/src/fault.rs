@@ -233,6 +233,11 @@ pub fn outside() -> Vec<&'static str> {
     names(|fault| fault.is_outside)
 }
 
+/// Whether `name` is that of an effect outside the catalogue.
+pub fn is_outside(name: &str) -> bool {
+    Fault::named(name).is_some_and(|fault| fault.is_outside)
+}
+
 /// The catalogue's families that are drawn, without the first two: plain viscous and Coulomb friction, which are baseline effects.
 pub fn families() -> Vec<&'static str> {
     names(|fault| !fault.is_outside && fault.is_drawn).split_off(2)

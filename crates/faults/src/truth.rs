@@ -125,6 +125,6 @@ impl Injected {
 
     /// Whether it is outside the catalogue.
     pub fn is_outside_the_catalogue(&self) -> bool {
-        self.effect.ends_with("_unknown")
+        crate::is_outside(&self.effect)
     }
 }

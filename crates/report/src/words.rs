@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use arm::JointKind;
 pub use diagnosis::list;
 use diagnosis::statistics::rms;
-use diagnosis::{Change, Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict};
+use diagnosis::{
+    Change, Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict, Written,
+};
 use effects::Regressor;
 
 use crate::numbers;
@@ -65,18 +67,12 @@ pub fn share(finding: &Finding) -> Option<f64> {
 /// A finding's effect with its parameters, as a noun phrase; for a finding between two sensors, with its place.
 pub fn described(finding: &Finding) -> String {
     // A parameter has as many digits as its interval supports, as in the table.
-    let quantity = |value: f64, unit: &str| {
-        let mut texts = finding.parameters.iter().filter_map(|(name, own)| {
-            let (text, _) = numbers::value_and_interval(name, own);
-            if own.value == value && own.unit == unit {
-                Some(text)
-            } else if 100.0 * own.value == value {
-                text.strip_suffix(" %").map(str::to_owned)
-            } else {
-                None
-            }
-        });
-        texts.next().unwrap_or_else(|| numbers::quantity(value, unit))
+    let quantity = |name: &str, parameter: &Parameter, written: Written| {
+        let (text, _) = numbers::value_and_interval(name, parameter);
+        match written {
+            Written::Percent => text.strip_suffix(" %").unwrap_or(&text).to_owned(),
+            Written::InUnit => text,
+        }
     };
     let text = diagnosis::described(finding, &quantity);
     match &finding.place.state {

@@ -44,7 +44,7 @@ pub fn canonical(effect: &str) -> &str {
     }
 }
 
-/// Whether the effect is outside the catalogue.
+/// Whether the effect is outside the catalogue: ground truths name such effects with this ending.
 pub fn is_outside(effect: &str) -> bool {
     effect.ends_with("_unknown")
 }

@@ -68,7 +68,7 @@ pub use published::{
 pub use rules::{LEAST_SHARE, Name};
 pub use score::{Family, Figure, Score, Target};
 pub use strict::{SIZE_WITHIN, Strict, StrictFamily, UrdfError, UrdfGroup};
-pub use summary::{Curve, Errors, ParameterScore, SizeBin};
+pub use summary::{Curve, Errors, Measure, ParameterScore, SizeBin};
 pub use sums::score;
 pub use tried::{Again, Tried};
 pub use truth::{Injected, Truth};

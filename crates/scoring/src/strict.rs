@@ -124,9 +124,9 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
 pub enum UrdfError {
     /// Exact, apart from the injected faults.
     Exact,
-    /// Up to 20 %, as of a robot that was measured or modelled with care.
+    /// Less than 20 %, as of a robot that was measured or modelled with care.
     Some,
-    /// More than 20 %, as of masses from a CAD model without cables and covers.
+    /// 20 % or more, as of masses from a CAD model without cables and covers.
     Much,
 }
 
@@ -147,8 +147,8 @@ impl UrdfError {
     pub fn words(self) -> &'static str {
         match self {
             Self::Exact => "exact",
-            Self::Some => "wrong by 3 to 10 %",
-            Self::Much => "wrong by 30 %",
+            Self::Some => "wrong by less than 20 %",
+            Self::Much => "wrong by 20 % or more",
         }
     }
 }

@@ -11,10 +11,20 @@ use crate::outcome::{Fate, Outcome};
 /// The detection rate against one measure of size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// The measure: `expressed_share`, or `over_noise` (see [`Outcome::over_noise`]).
-    pub measure: String,
+    /// The measure.
+    pub measure: Measure,
     /// The bins from small to large; empty bins are omitted.
     pub bins: Vec<SizeBin>,
+}
+
+/// A measure of an effect's size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// The expressed share.
+    ExpressedShare,
+    /// The torque over the noise ([`Outcome::over_noise`]).
+    OverNoise,
 }
 
 /// Effects of similar size.
@@ -73,12 +83,12 @@ pub fn curves(injected: &[Outcome]) -> Vec<Curve> {
     let shares: &[f64] = &[0.0, 0.0075, 0.015, 0.03, 0.06, 0.12, 0.25];
     let noises: &[f64] = &[0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
     vec![
-        curve("expressed_share", shares, injected, &|outcome| outcome.share),
-        curve("over_noise", noises, injected, &|outcome| outcome.over_noise),
+        curve(Measure::ExpressedShare, shares, injected, &|outcome| outcome.share),
+        curve(Measure::OverNoise, noises, injected, &|outcome| outcome.over_noise),
     ]
 }
 
-fn curve(measure: &str, bounds: &[f64], injected: &[Outcome], size: &dyn Fn(&Outcome) -> Option<f64>) -> Curve {
+fn curve(measure: Measure, bounds: &[f64], injected: &[Outcome], size: &dyn Fn(&Outcome) -> Option<f64>) -> Curve {
     let bin = |k: usize| {
         let (from, to) = (bounds[k], bounds.get(k + 1).copied());
         let inside = |outcome: &&Outcome| size(outcome).is_some_and(|s| s >= from && to.is_none_or(|to| s < to));
@@ -92,7 +102,7 @@ fn curve(measure: &str, bounds: &[f64], injected: &[Outcome], size: &dyn Fn(&Out
         })
     };
     Curve {
-        measure: measure.to_owned(),
+        measure,
         bins: (0..bounds.len()).filter_map(bin).collect(),
     }
 }

@@ -3,18 +3,18 @@
 use std::collections::BTreeMap;
 
 use effects::Acts;
-use effects::arm::{InertialParameters, Payload};
 use effects::laws::ACCELERATION;
 
 use crate::data::Data;
 use crate::findings::other_friction::widen;
 use crate::report::{Change, Confusable, Finding, Place};
-use crate::search::candidate::{Candidate, Hypothesis};
+use crate::search::candidate::Candidate;
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
 use crate::selection::gain::held_out_gain;
 use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
+use crate::selection::payload::as_last_link;
 use crate::selection::rivals::{Rival, Standing, standing};
 use crate::thresholds::LISTED_SHARE;
 
@@ -54,7 +54,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         effect: hypothesis.name().unwrap_or_default(),
         joint: joint.map(joint_name),
     };
-    let last_link = as_last_link(last, member.candidate);
+    let last_link = as_last_link(&last.study, member.candidate);
     let change = change(last, member.candidate);
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
@@ -141,16 +141,6 @@ fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
         Acts::Until(_) if was_there => Some(Change::Reduced),
         Acts::Until(_) => Some(Change::Removed),
     }
-}
-
-/// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
-/// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
-fn as_last_link(last: &FinalFit, candidate: usize) -> Option<Rival> {
-    let study = &last.study;
-    let is_payload = study.candidates[candidate].hypothesis.is(&Payload);
-    let links = Hypothesis::of(&InertialParameters);
-    let is_wrong = study.strengths.strongest() > 0.0;
-    (is_payload && study.always_acts(candidate) && is_wrong).then(|| (links, study.data.arm.dof().checked_sub(1)))
 }
 
 /// The share of the drive's inertia that is named with a spring or a gap.

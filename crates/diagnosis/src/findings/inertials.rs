@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use arm::Inertia;
-use effects::arm::{INERTIAL_PARAMETER, InertialParameters, Payload, body};
+use effects::arm::{INERTIAL_PARAMETER, InertialParameters, body};
 use effects::{Effect, EffectKind};
 
 use crate::regression::bodies::{PER_LINK, physical};
@@ -255,10 +255,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         });
     };
     // A payload and the last link are one body, so that the remaining change of the link is not a second finding.
-    let has_payload = judged
-        .members
-        .iter()
-        .any(|member| study.candidates[member.candidate].hypothesis.is(&Payload));
+    let has_payload = judged.members.iter().any(|member| study.is_payload(member.candidate));
     for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
         let name = &data.arm.joints()[link].name;
         let parameters = list

@@ -44,13 +44,22 @@ pub fn constant_torques(constants: &BTreeMap<String, Parameter>) -> Option<Strin
     ))
 }
 
-/// The finding's effect as a noun phrase with its parameters; `quantity` formats a value with its unit (`1` for none).
-pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> String {
+/// How a sentence writes a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// The value with its unit.
+    InUnit,
+    /// A hundred times the value; the sentence adds the sign.
+    Percent,
+}
+
+/// The finding's effect as a noun phrase with its parameters; `quantity` formats a parameter of this name.
+pub fn described(finding: &Finding, quantity: &dyn Fn(&str, &Parameter, Written) -> String) -> String {
     if finding.as_effect.is(&InertialParameters) && finding.joint.is_none() {
         let relative = finding.parameters.get("relative");
         return format!(
             "masses, centres of mass and inertias of most links that differ from the URDF by about {} % of their size",
-            relative.map_or_else(String::new, |relative| quantity(100.0 * relative.value, "1"))
+            relative.map_or_else(String::new, |relative| quantity("relative", relative, Written::Percent))
         );
     }
     let mut parts = finding.as_effect.kind().get().sentence(&finding.as_effect).split('{');
@@ -60,8 +69,10 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         let value = |key: &str| finding.parameters.get(key);
         match (key, key.strip_suffix('%')) {
             ("other", _) => text.push_str(finding.other.as_deref().unwrap_or("another joint")),
-            (_, Some(key)) => text.push_str(&value(key).map_or_else(String::new, |p| quantity(100.0 * p.value, "1"))),
-            _ => text.push_str(&value(key).map_or_else(String::new, |p| quantity(p.value, p.unit))),
+            (_, Some(key)) => {
+                text.push_str(&value(key).map_or_else(String::new, |p| quantity(key, p, Written::Percent)));
+            }
+            _ => text.push_str(&value(key).map_or_else(String::new, |p| quantity(key, p, Written::InUnit))),
         }
         text.push_str(rest);
     }
@@ -78,7 +89,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(f64, &str) -> String) -> S
         (Some(Change::Increased), _) => format!("{text}, in addition to that in the recordings from before"),
         (Some(Change::Removed), _) => format!("{text}, in the recordings from before only"),
         (Some(Change::Reduced), _) => format!("{text} less than in the recordings from before"),
-        (None, Some(onset)) => format!("{text} from {} on", quantity(onset.value, onset.unit)),
+        (None, Some(onset)) => format!("{text} from {} on", quantity("onset", onset, Written::InUnit)),
         (None, None) => text,
     };
     if is_undetermined(finding) {
@@ -174,11 +185,12 @@ pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>, order: impl Fn(&
     phrases.into_iter().map(phrase).collect()
 }
 
-/// A value with its unit.
-fn plain(value: f64, unit: &str) -> String {
-    match unit {
-        "1" => number(value),
-        unit => format!("{} {unit}", number(value)),
+/// A value with its unit; a percentage without its sign.
+fn plain(_: &str, parameter: &Parameter, written: Written) -> String {
+    match (written, parameter.unit) {
+        (Written::Percent, _) => number(100.0 * parameter.value),
+        (Written::InUnit, "1") => number(parameter.value),
+        (Written::InUnit, unit) => format!("{} {unit}", number(parameter.value)),
     }
 }
 

@@ -1,9 +1,7 @@
 //! The final fit: the named effects are linearised about the arm that contains them, and effects that fail the last tests are removed.
 
-use effects::arm::Payload;
 use effects::sensor::{TorqueOffset, TorqueScale};
 
-use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
 use crate::report::JointFit;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
@@ -12,16 +10,14 @@ use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
-use crate::selection::possible_load;
+use crate::selection::payload::{self, possible::with_possible_moments, without_moment::without_moment};
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
 use crate::selection::unclear::{Unclear, unclear};
-use crate::selection::without_moment::without_moment;
 
 use crate::thresholds::{
-    HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_MOUNTED, LEAST_UNDECIDED, MOST_SETTLING, PARTLY,
-    UNDECIDED_NATS,
+    HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, MOST_SETTLING, PARTLY, UNDECIDED_NATS,
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
@@ -67,7 +63,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                     study.give_up(payload);
                     drop_name(study, judged, payload, "it may have no moment about the tool's origin");
                 }
-                None if possible_load::make_possible(study, judged) => {}
+                None if with_possible_moments(study, judged) => {}
                 None => return resampled,
             },
         }
@@ -77,7 +73,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
 /// Fits the named effects about the arm that contains them, and removes none.
 pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
     relinearise(study, judged, true);
-    if possible_load::make_possible(study, judged) {
+    if with_possible_moments(study, judged) {
         relinearise(study, judged, true);
     }
     resample(study, &judged.named)
@@ -228,12 +224,9 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
             return Some(("another effect explains nearly as much in its place", false));
         }
         let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, member.candidate);
-        let is_doubtful = || {
-            let may_differ = study.stated.links != Some(0.0);
-            may_differ && is_small_beside_the_last_link(study, &judged.named, member.candidate)
-                || study.strengths.are_of_some_links()
-        };
-        if hypothesis.is(&Payload) && is_doubtful() && evidence(study) < LEAST_BESIDE_SOME_LINKS {
+        let is_doubtful =
+            study.is_payload(member.candidate) && payload::is_doubtful(study, &judged.named, member.candidate);
+        if is_doubtful && evidence(study) < LEAST_BESIDE_SOME_LINKS {
             return Some(("links that are wrong explain nearly as much in its place", true));
         }
         // If most links agree with the URDF, one wrong link is an unlikely explanation. A URDF with placeholders is wrong.
@@ -253,15 +246,6 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         let (rule, is_inertial) = rule(member)?;
         Some((member.candidate, rule, is_inertial))
     })
-}
-
-/// Whether a payload is small beside the last link, which may then differ from the URDF by as much: a centre of mass that lies some
-/// millimetres elsewhere has the same torque.
-fn is_small_beside_the_last_link(study: &Study, selected: &Selection, payload: usize) -> bool {
-    let candidate = &study.candidates[payload];
-    let mass = selected.fit.coefficient(candidate.columns[0]);
-    let drawn = study.data.arm.inertial_parameters()[(study.data.arm.dof() - 1) * PER_LINK];
-    candidate.columns.len() == PER_LINK && study.always_acts(payload) && mass > 0.0 && mass < LEAST_MOUNTED * drawn
 }
 
 /// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's. For errors

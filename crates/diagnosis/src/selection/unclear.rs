@@ -1,6 +1,5 @@
 //! Effects that the final fit contradicts, or whose size or onset it leaves open.
 
-use effects::arm::Payload;
 use effects::drive::{LATE, UNIT_LAG};
 use effects::{Against, Effect, Term};
 use torque::Corrected;
@@ -10,10 +9,11 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
+use crate::selection::payload::is_of_no_mass;
 use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
 use crate::selection::variation::is_variation;
-use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED, LEAST_PAYLOAD};
+use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
 
 /// Why an effect is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,18 +118,10 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
         first.is_some_and(|named| may_be_nothing(named.effect.spec(), &named.parameters))
     };
     // Wrong links do not excuse a body without mass that is new: they are the same before it was there.
-    let is_payload = |study: &Study, member: usize| study.candidates[member].hypothesis.is(&Payload);
-    let is_new_body = |study: &Study, member: usize| is_payload(study, member) && !study.always_acts(member);
-    // A body of a few grams that was always there is no other than the last link with a mass of its usual accuracy.
-    let last_mass = study.data.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass);
-    let is_tiny = |study: &Study, member: usize| {
-        let is_small = |named: &Named| named.effect.number("mass").abs() < LEAST_PAYLOAD * last_mass;
-        let always = is_payload(study, member) && study.always_acts(member);
-        always && name(study, resampled, member).first().is_some_and(is_small)
-    };
+    let is_new_body = |study: &Study, member: usize| study.is_payload(member) && !study.always_acts(member);
     let mut list = judged.named.set.clone();
     list.retain(|&member| {
-        is_tiny(study, member)
+        study.is_payload(member) && is_of_no_mass(study, resampled, member)
             || may_be(study, member)
                 && (is_new_body(study, member)
                     || study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED)

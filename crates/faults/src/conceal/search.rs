@@ -7,7 +7,7 @@ use super::Stage;
 use crate::campaign::CasePlan;
 use crate::error::FaultError;
 use crate::expressed_share::{Torques, share};
-use crate::fault::{Fault, Leaves, Size, families, outside};
+use crate::fault::{Fault, Leaves, Size, families, is_outside, outside};
 use crate::machine::Run;
 use crate::motion::{DURATION, LEAD_TICKS, Reference, start};
 use crate::site::{Scales, log_uniform};
@@ -47,8 +47,7 @@ pub(super) fn search(
         if attempt >= CASES / 2 {
             // Effects that are not detectable on this robot are replaced by others.
             for name in &mut names {
-                let is_outside = Fault::named(name).is_some_and(|fault| fault.is_outside);
-                let known = if is_outside { outside() } else { families() };
+                let known = if is_outside(name) { outside() } else { families() };
                 *name = known.choose(random).copied().unwrap_or(name).to_owned();
             }
             names.sort_unstable();

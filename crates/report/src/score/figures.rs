@@ -1,6 +1,6 @@
 //! The drawings of a proof: shares with their intervals.
 
-use scoring::{Calibration, Counted, Curve};
+use scoring::{Calibration, Counted, Curve, Measure};
 
 use crate::chart::{Scale, Svg};
 use crate::numbers::percent_to_a_tenth as percent;
@@ -34,7 +34,7 @@ fn point(svg: &mut Svg, y: &Scale, x: f64, counted: &Counted) {
 
 /// Detection against size, bin by bin.
 pub fn detection(curve: &Curve) -> String {
-    let is_share = curve.measure == "expressed_share";
+    let is_share = curve.measure == Measure::ExpressedShare;
     let (mut svg, y) = frame("Detection against size", "found");
     let step = (RIGHT - LEFT) / curve.bins.len().max(1) as f64;
     for (k, bin) in curve.bins.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use scoring::{Errors, Family, HeldOut, Score, quantile};
+use scoring::{Errors, Family, HeldOut, Measure, Score, quantile};
 
 use super::figures;
 use super::words::{counted, number, share};
@@ -55,7 +55,7 @@ pub fn found(score: &Score) -> Vec<Block> {
         table(&head, 1, score.families.iter().map(line).collect()),
     ];
     for curve in &score.detection {
-        let is_share = curve.measure == "expressed_share";
+        let is_share = curve.measure == Measure::ExpressedShare;
         let caption = if is_share {
             "Detection rate against the effect's expressed share, with Wilson's 95 % interval. Hollow circles: found or an alternative of a finding."
         } else {

@@ -7,11 +7,21 @@ use crate::search::problem::Selection;
 use crate::thresholds::{FELT, PAYLOAD_JOINTS, PER_LINK_APART};
 
 impl Study {
+    /// Whether a candidate is a payload, with or without moments of inertia.
+    pub fn is_payload(&self, candidate: usize) -> bool {
+        self.candidates[candidate].hypothesis.is(&Payload)
+    }
+
+    /// The mass of the URDF's last link (kg).
+    pub fn mass_of_last_link(&self) -> f64 {
+        self.data.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass)
+    }
+
     /// `selected` with a payload in the place of another body of the last link, if that is better. A search that takes the link
     /// first does not find the payload, because both explain the same torque.
     pub fn with_payload_for_last_link(&mut self, selected: Selection) -> Selection {
         let common = self.strengths.common();
-        let is_payload = |&c: &usize| self.candidates[c].hypothesis.is(&Payload);
+        let is_payload = |&c: &usize| self.is_payload(c);
         let Some(last) = self.data.arm.dof().checked_sub(1) else {
             return selected;
         };
@@ -47,7 +57,7 @@ impl Study {
             let sets_in = || !self.always_acts(c);
             let columns = &self.candidates[c].columns;
             let is_felt = || self.are_felt_at_the_end(columns, &selected.fit.values(columns));
-            self.candidates[c].hypothesis.is(&Payload) && !sets_in() && !is_felt()
+            self.is_payload(c) && !sets_in() && !is_felt()
         };
         let unfelt: Vec<usize> = selected.set.iter().copied().filter(is_unfelt).collect();
         let (Some(&payload), true) = (unfelt.first(), self.strengths.common() > 0.0) else {

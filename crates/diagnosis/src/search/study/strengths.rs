@@ -1,7 +1,6 @@
 //! Selects the strengths of the background together with the effects, by the gain of the score.
 
 use effects::Scales;
-use effects::arm::Payload;
 use rayon::prelude::*;
 
 use super::Study;
@@ -105,7 +104,7 @@ impl Study {
     /// and no payload is selected, whose mass depends on them, or if the user states the strengths.
     pub fn with_all_links(&self, selected: &Selection) -> Option<(Strengths, Selection)> {
         let links = &self.strengths.links;
-        let has_payload = selected.set.iter().any(|&c| self.candidates[c].hypothesis.is(&Payload));
+        let has_payload = selected.set.iter().any(|&c| self.is_payload(c));
         let margin = if links.iter().any(|&rho| rho > 0.0) {
             NEARLY_AS_LIKELY
         } else if has_payload {

@@ -31,7 +31,7 @@ fn chosen_on(plans: &[CasePlan], robots: &[Robot], name: &str) -> BTreeSet<usize
             .filter(|plan| plan.robot(robots).name() == name)
             .filter(acts)
     };
-    let is_outside = |plan: &CasePlan| plan.effects.iter().any(|effect| effect.ends_with("_unknown"));
+    let is_outside = |plan: &CasePlan| plan.effects.iter().any(|effect| faults::is_outside(effect));
     let mut seen: BTreeSet<&str> = BTreeSet::from([PASSES]);
     let mut taken = BTreeSet::new();
     for outside in [true, false] {
@@ -77,7 +77,7 @@ mod tests {
                 .iter()
                 .all(|number| plan(number).robot(&robots).name() == "puma560")
         );
-        let outside = |number: &&usize| plan(number).effects.iter().any(|name| name.ends_with("_unknown"));
+        let outside = |number: &&usize| plan(number).effects.iter().any(|name| faults::is_outside(name));
         assert_eq!(taken.iter().filter(outside).count(), OUTSIDE);
         let families: BTreeSet<&String> = taken.iter().flat_map(|number| &plan(number).effects).collect();
         assert!(families.len() >= MOST, "{families:?}");

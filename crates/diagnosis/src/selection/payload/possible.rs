@@ -1,6 +1,6 @@
 //! Payloads whose moments of inertia no body has, because the recordings do not determine all of them.
 
-use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, Payload, body, exists};
+use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, body, exists};
 use nalgebra::Matrix6;
 
 use crate::regression::bodies::{PER_LINK, WITHOUT_MOMENTS, nearest_tensor};
@@ -9,9 +9,8 @@ use crate::selection::judge::{self, Judged};
 
 /// Gives the payload, if its moments are impossible, the possible ones that the recordings contradict least: it is replaced by the
 /// payload without moments in the fit, which has them as its tensor. Returns whether a payload was replaced.
-pub fn make_possible(study: &mut Study, judged: &mut Judged) -> bool {
-    let payloads = |&c: &usize| study.candidates[c].hypothesis.is(&Payload);
-    let mut payloads = judged.named.set.iter().copied().filter(payloads);
+pub fn with_possible_moments(study: &mut Study, judged: &mut Judged) -> bool {
+    let mut payloads = judged.named.set.iter().copied().filter(|&c| study.is_payload(c));
     // Two payloads have one tensor in the fit, if neither has moments.
     let (Some(payload), None) = (payloads.next(), payloads.next()) else {
         return false;
@@ -29,7 +28,7 @@ pub fn make_possible(study: &mut Study, judged: &mut Judged) -> bool {
     let is_same = |&c: &usize| {
         let other = &study.candidates[c];
         let first = &study.table.terms[other.columns[0]];
-        other.hypothesis.is(&Payload)
+        study.is_payload(c)
             && first.always().is(&PAYLOAD_WITHOUT_MOMENTS)
             && first.acts == study.table.terms[columns[0]].acts
     };

@@ -5,7 +5,7 @@
 //! that one body explains nearly as much as the background of all links, it is named, and also if there is clearly more evidence
 //! for the body beside another background.
 
-use effects::arm::{InertialParameters, LinkInertialError, Payload};
+use effects::arm::{InertialParameters, LinkInertialError};
 
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
@@ -22,13 +22,12 @@ use crate::thresholds::{LEAST_BESIDE_SOME_LINKS, LEAST_OF_THE_LINK, NEARLY_ALL, 
 /// nearly as much in its place; returns the new resamplings. Other payloads are unchanged: a part of the background, or named by
 /// the search.
 pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
-    let is_payload = |c: usize| study.candidates[c].hypothesis.is(&Payload);
     let lighter = lighter_last_link(study, &judged.named);
     let is_exact = study.strengths.links.last().is_none_or(|&rho| rho == 0.0);
-    if is_exact && lighter.is_none() || judged.named.set.iter().any(|&c| is_payload(c)) {
+    if is_exact && lighter.is_none() || judged.named.set.iter().any(|&c| study.is_payload(c)) {
         return None;
     }
-    let whole = |&c: &usize| is_payload(c) && study.candidates[c].columns.len() == PER_LINK;
+    let whole = |&c: &usize| study.is_payload(c) && study.candidates[c].columns.len() == PER_LINK;
     let always = |&c: &usize| study.always_acts(c);
     let body = (0..study.candidates.len()).filter(whole).find(always)?;
     // About the last link's body without the tool, the quadratic prior is smallest between that body and the URDF's. Beside the
@@ -40,11 +39,10 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     };
     let before = std::mem::replace(&mut study.strengths, strengths);
     let resampled = resample(study, &next);
-    let drawn = study.data.arm.inertial_parameters()[(study.data.arm.dof() - 1) * PER_LINK];
     let is_missing = name(study, &resampled.evenly(), body)
         .first()
         .and_then(|named| named.parameters.get("mass"))
-        .is_some_and(|mass| mass.ci95[1] < 0.0 && -mass.value >= LEAST_OF_THE_LINK * drawn);
+        .is_some_and(|mass| mass.ci95[1] < 0.0 && -mass.value >= LEAST_OF_THE_LINK * study.mass_of_last_link());
     let products = study.training_products();
     let problem = study.problem(&products);
     let is_undecided = || {

@@ -3,8 +3,6 @@
 //! On some arms, the tool's origin is where the axes of the wrist meet. A body whose centre of mass is there has no torque on the last
 //! joints. What remains is a mass at the wrist, which a heavier link before it represents as well.
 
-use effects::arm::Payload;
-
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::judge::Judged;
@@ -23,7 +21,7 @@ pub fn without_moment(study: &Study, judged: &Judged, resampled: &Resampled) -> 
     let is_without_moment = |&c: &usize| {
         let candidate = &study.candidates[c];
         let (mass, moments) = (candidate.columns[0], candidate.columns.get(1..4));
-        candidate.hypothesis.is(&Payload)
+        study.is_payload(c)
             && study.always_acts(c)
             && !may_be_zero(mass)
             && !study.are_felt_at_the_end(&[mass], &[1.0])
