@@ -116,3 +116,27 @@ pub fn gap(at: usize, halfgap: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
     }
     out
 }
+
+/// The highest frequency at which noise is summed, in cut-offs. Source: the filter leaves 0.2 % of the power there.
+const NOISE_CUTOFFS: f64 = 3.0;
+/// The number of frequencies at which noise is summed. Source: the steps are narrow beside a resonance of a damping ratio of 0.01.
+const NOISE_STEPS: usize = 2000;
+
+/// The power of white noise of the positions in the torque of a link of inertia `mass` (kg m² or kg) behind a spring, relative to that of the
+/// link without it, after a filter of half power at `cutoff` (Hz).
+///
+/// The link is driven by the recorded motion. Its torque is M ω² / (K − M ω² + i D ω) times that of the rigid link, so that a lightly
+/// damped spring amplifies the noise at its resonance.
+pub fn noise_behind(stiffness: f64, damping: f64, mass: f64, cutoff: f64) -> f64 {
+    let (mut rigid, mut elastic) = (0.0, 0.0);
+    for step in 1..=NOISE_STEPS {
+        let hertz = step as f64 / NOISE_STEPS as f64 * NOISE_CUTOFFS * cutoff;
+        let omega = std::f64::consts::TAU * hertz;
+        // White positions have accelerations that grow with the square of the frequency; the filter is Gaussian.
+        let power = omega.powi(4) * (-std::f64::consts::LN_2 * (hertz / cutoff).powi(2)).exp();
+        let inertial = mass * omega * omega;
+        rigid += power;
+        elastic += power * inertial * inertial / ((stiffness - inertial).powi(2) + (damping * omega).powi(2));
+    }
+    elastic / rigid
+}

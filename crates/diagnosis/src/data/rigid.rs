@@ -85,9 +85,13 @@ impl Rigid {
 
     /// The inertia that `joint` alone moves behind its gear, at each tick (kg m² or kg).
     pub fn link_mass(&self, joint: usize) -> impl Iterator<Item = f64> {
-        self.mass[joint][joint]
-            .iter()
-            .map(move |mass| mass - self.rotors[joint])
+        self.coupled_mass(joint, joint)
+    }
+
+    /// The torque behind the gear of `joint` for an acceleration of one of joint `by`, at each tick (kg m², kg m or kg).
+    pub fn coupled_mass(&self, joint: usize, by: usize) -> impl Iterator<Item = f64> {
+        let rotor = if joint == by { self.rotors[joint] } else { 0.0 };
+        self.mass[joint][by].iter().map(move |mass| mass - rotor)
     }
 
     /// Sets `background` to the difference of the torque from that of `arm` at the same positions of the joints, of an arm that is the

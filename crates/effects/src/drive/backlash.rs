@@ -1,7 +1,7 @@
 //! A gap in the gear.
 
 use super::delay::SECOND_ENCODER;
-use crate::compliance::{LinkSide, gap, sprung};
+use crate::compliance::{LinkSide, gap, noise_behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
@@ -61,8 +61,7 @@ pub static GAP: Law = Law {
 fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
     let (joint, [halfgap, stop, ratio, _]) = (term.of[0], term.sizes);
     let ticks = if stop.is_finite() {
-        let damping = |mass: f64| 2.0 * ratio * (stop * mass.max(0.0)).sqrt();
-        sprung(joint, halfgap, stop, damping, motion)
+        sprung(joint, halfgap, stop, |mass| damping(stop, ratio, mass), motion)
     } else {
         gap(joint, halfgap, motion)
     };
@@ -87,6 +86,11 @@ const FIRST_STOPS: [f64; 3] = [12.0, 20.0, 32.0];
 /// The stiffness of ends (N m/rad) on which a link with an inertia swings at a frequency (Hz).
 fn stop(mass: f64, hertz: f64) -> f64 {
     mass * (2.0 * std::f64::consts::PI * hertz).powi(2)
+}
+
+/// The damping (N m s/rad) of ends with this stiffness (N m/rad) and damping ratio for a link of inertia `mass`.
+fn damping(stop: f64, ratio: f64, mass: f64) -> f64 {
+    2.0 * ratio * (stop * mass.max(0.0)).sqrt()
 }
 
 /// The forms of a gap with compliant ends that are tried in place of a gap with rigid ends, for a link of inertia `mass`
@@ -144,6 +148,21 @@ impl EffectKind for Backlash {
         Some(Effect::of(&Self).on(estimate.joint_name()).with("halfgap", halfgap))
     }
 
+    /// Where the gap is closed, compliant ends are a spring.
+    fn noise_gain(&self, term: &Term, mass: f64, cutoff: f64) -> f64 {
+        let [_, stop, ratio, ..] = term.sizes;
+        if stop.is_finite() {
+            noise_behind(stop, damping(stop, ratio, mass), mass, cutoff)
+        } else {
+            0.0
+        }
+    }
+
+    /// A coefficient below zero, beside effects that do not fit, is no gap.
+    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
+        effect.number("halfgap") > 0.0
+    }
+
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
         machine.gaps[at.joint] += effect.number("halfgap");
     }
@@ -158,6 +177,19 @@ mod tests {
     fn gaps_add_up() {
         let effect = Effect::of(&Backlash).on("a").with("halfgap", 0.001);
         assert_eq!(machine(&effect).gaps, [0.001, 0.0]);
+    }
+
+    /// Noise of the positions passes compliant ends as it passes a spring, and a coefficient below zero is read as a gap of zero.
+    #[test]
+    fn noise_behind_compliant_ends_is_no_gap() {
+        let gain = |stop: f64| Backlash.noise_gain(&Term::about(&GAP, 0).sized([0.001, stop, 0.2]), 2.0, 12.0);
+        assert!(gain(f64::INFINITY) == 0.0);
+        assert!(gain(stop(2.0, 8.0)) > 0.3, "{}", gain(stop(2.0, 8.0)));
+        let is_certain = |halfgap: f64| {
+            let effect = Effect::of(&Backlash).on("a").with("halfgap", halfgap);
+            Backlash.is_certain(&effect, &|_| None, 0.0)
+        };
+        assert!(is_certain(0.001) && !is_certain(0.0));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A drive that turns its link through a spring.
 
 use super::delay::SECOND_ENCODER;
-use crate::compliance::{LinkSide, sprung};
+use crate::compliance::{LinkSide, noise_behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{
@@ -60,10 +60,6 @@ fn link_side(term: &Term, motion: &crate::Signals<'_>) -> LinkSide {
 const RESONANCES: [f64; 8] = [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0];
 /// The damping ratio that is tried first. Source: first diagnosis.
 const DAMPING_RATIO: f64 = 0.06;
-/// The highest frequency at which noise is summed, in cut-offs. Source: the filter leaves 0.2 % of the power there.
-const NOISE_CUTOFFS: f64 = 3.0;
-/// The number of frequencies at which noise is summed. Source: the steps are narrow beside a resonance of a damping ratio of 0.01.
-const NOISE_STEPS: usize = 2000;
 
 impl EffectKind for JointElasticity {
     fn spec(&self) -> &'static Spec {
@@ -105,21 +101,9 @@ impl EffectKind for JointElasticity {
         Some(effect.with("stiffness", stiffness).with("damping", damping))
     }
 
-    /// The link is driven by the recorded motion. Its torque is M ω² / (K − M ω² + i D ω) times that of the rigid link, so that a lightly
-    /// damped spring amplifies the noise of the positions at its resonance.
     fn noise_gain(&self, term: &Term, mass: f64, cutoff: f64) -> f64 {
         let [stiffness, damping, ..] = term.sizes;
-        let (mut rigid, mut elastic) = (0.0, 0.0);
-        for step in 1..=NOISE_STEPS {
-            let hertz = step as f64 / NOISE_STEPS as f64 * NOISE_CUTOFFS * cutoff;
-            let omega = std::f64::consts::TAU * hertz;
-            // White positions have accelerations that grow with the square of the frequency; the filter is Gaussian.
-            let power = omega.powi(4) * (-std::f64::consts::LN_2 * (hertz / cutoff).powi(2)).exp();
-            let inertial = mass * omega * omega;
-            rigid += power;
-            elastic += power * inertial * inertial / ((stiffness - inertial).powi(2) + (damping * omega).powi(2));
-        }
-        elastic / rigid
+        noise_behind(stiffness, damping, mass, cutoff)
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
