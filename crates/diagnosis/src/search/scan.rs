@@ -75,12 +75,14 @@ pub fn contacts(
         }
         let step = (times[rows.end - 1] - times[rows.start]) / (rows.len() - 1) as f64;
         let most = MOST_OF_A_RECORDING * step * rows.len() as f64;
+        let usual = trace(&sums[rows.len()]) / rows.len() as f64;
         for duration in CONTACT_DURATIONS.into_iter().filter(|&duration| duration <= most) {
             let length = ((duration / step).round() as usize).max(3);
             let hop = (length / 5).max(1);
+            let least = LEAST_FELT * usual * length as f64;
             let mut from = 0;
             while from + length <= rows.len() {
-                let gain = force_gain(&sums[from], &sums[from + length]);
+                let gain = force_gain(&sums[from], &sums[from + length], least);
                 found.push((gain, times[rows.start + from], times[rows.start + from + length - 1]));
                 from += hop;
             }
@@ -100,10 +102,23 @@ pub fn contacts(
     best
 }
 
-fn force_gain(before: &[f64; 9], after: &[f64; 9]) -> f64 {
-    let d: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+/// The largest part of a force's usual power in the torques that is no torque at all: the rounding of sums, in a window in which only
+/// joints move through whose axes the force passes.
+const LEAST_FELT: f64 = 1e-6;
+
+/// What a force on the tool explains between two sums; nothing if its power is below `least`.
+fn force_gain(before: &[f64; 9], after: &[f64; 9], least: f64) -> f64 {
+    let d: [f64; 9] = std::array::from_fn(|k| after[k] - before[k]);
+    if trace(&d) <= least {
+        return 0.0;
+    }
     let matrix = Matrix3::new(d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5]);
     explained(matrix, &Vector3::new(d[6], d[7], d[8]), FORCE_RIDGE)
+}
+
+/// The trace of the matrix in sums.
+fn trace(sums: &[f64; 9]) -> f64 {
+    sums[0] + sums[3] + sums[5]
 }
 
 /// The numbers of periods (rad of phase per rad or m) of a ripple on `joint` that explain most of its residual: peaks, best
@@ -308,5 +323,24 @@ pub fn contact_gain(data: &Data, table: &Table, without: &Fit, columns: &[usize]
         1.0 - (after / before).sqrt()
     } else {
         0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In a window in which only a joint moves through whose axis the force passes, rounding leaves a part of the right side and
+    /// nothing of the matrix.
+    #[test]
+    fn a_force_that_no_joint_feels_explains_nothing() {
+        let before = [1e8, 0.0, 0.0, 1e8, 0.0, 1e8, 1e-3, 0.0, 0.0];
+        let mut after = before;
+        after[6] += 1e-18;
+        assert!(force_gain(&before, &after, 0.0) == 0.0);
+        after[6] = 2e-3;
+        assert!(force_gain(&before, &after, 1.0) == 0.0);
+        after[0] += 1e4;
+        assert!(force_gain(&before, &after, 1.0) > 0.0);
     }
 }
