@@ -225,7 +225,9 @@ pub fn inertials(last: &FinalFit) -> Inertials {
             return None;
         }
         let forms = special_forms(study, &judged.named);
-        Some((evidence.min(constants), forms.into_iter().map(confusable).collect()))
+        let beyond = forms.iter().filter_map(|(beyond, _)| *beyond);
+        let margin = beyond.fold(evidence.min(constants), f64::min);
+        Some((margin, forms.into_iter().map(|(_, form)| confusable(form)).collect()))
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside unmodelled structure on a joint, the changes may be a part of that structure.

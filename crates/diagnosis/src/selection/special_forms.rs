@@ -10,9 +10,10 @@ use crate::search::study::Study;
 use crate::selection::rivals::Rival;
 use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, NEARLY_NATS, SPECIAL_FORMS_TRIED};
 
-/// The special forms that the recordings do not exclude, the best first: those that are as likely beside a smaller correction of
-/// the links, or explain as much beside it, and names that were given up because wrong inertial parameters explain nearly as much. `selected` is the final fit.
-pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
+/// The special forms that the recordings do not exclude: names that were given up because wrong inertial parameters explain nearly as
+/// much, and those that are as likely beside a smaller correction of the links, or explain as much beside it, the best first. Each has its
+/// score beyond that of `selected`, the final fit (nats), if it is among the latter.
+pub fn special_forms(study: &Study, selected: &Selection) -> Vec<(Option<f64>, Rival)> {
     let links = |strengths: &Strengths| strengths.links.clone();
     let is_smaller =
         |strengths: &Strengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
@@ -24,16 +25,20 @@ pub fn special_forms(study: &Study, selected: &Selection) -> Vec<Rival> {
         .map(|(next, form)| (next.score, form))
         .collect();
     scores.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut forms: Vec<Rival> = Vec::new();
+    let beyond = |form: Rival| {
+        let best = scores.iter().find(|(_, other)| *other == form);
+        best.map(|(score, _)| score - selected.score)
+    };
+    let mut forms: Vec<(Option<f64>, Rival)> = Vec::new();
     for form in study
         .given_up
         .iter()
         .copied()
-        .chain(scores.into_iter().map(|(_, form)| form))
+        .chain(scores.iter().map(|(_, form)| *form))
     {
         let is_named = |&c: &usize| (study.candidates[c].hypothesis, study.candidates[c].joint) == form;
-        if !forms.contains(&form) && !selected.set.iter().any(is_named) {
-            forms.push(form);
+        if !forms.iter().any(|(_, known)| *known == form) && !selected.set.iter().any(is_named) {
+            forms.push((beyond(form), form));
         }
     }
     forms.truncate(MOST_SPECIAL_FORMS);
