@@ -47,6 +47,8 @@ pub struct FinalFit {
     pub residual: Vec<Vec<f64>>,
     /// The residuals of the exported model (N m or N): `[joint][row]`.
     pub exported: Vec<Vec<f64>>,
+    /// The payload on an arm of few joints, and its margin over wrong links (nats).
+    pub payload: Option<(usize, f64)>,
     /// Each joint's held-out error (NRMSE) with full linear identification.
     pub identified: Vec<Option<f64>>,
 }
@@ -68,6 +70,7 @@ impl FinalFit {
             None => found(&mut study, progress),
         };
         resampled.allow_for_other_background(&mut study, &judged.named);
+        let payload = payload::beside_few_links(&mut study, &judged.named);
         let (data, table, fit) = (&study.data, &study.table, &judged.named.fit);
         let joints = || (0..data.arm.dof()).into_par_iter();
         Ok(Self {
@@ -75,6 +78,7 @@ impl FinalFit {
             exported: joints().map(|joint| exported(data, table, fit, joint)).collect(),
             products: study.training_products(),
             held: study.held_products(),
+            payload,
             identified,
             judged,
             resampled,

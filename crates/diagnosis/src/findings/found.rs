@@ -3,20 +3,21 @@
 use std::collections::BTreeMap;
 
 use effects::Acts;
+use effects::arm::InertialParameters;
 use effects::laws::ACCELERATION;
 
 use crate::data::Data;
 use crate::findings::other_friction::widen;
 use crate::report::{Change, Confusable, Finding, Place};
-use crate::search::candidate::Candidate;
+use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
 use crate::selection::gain::held_out_gain;
 use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::payload::as_last_link;
-use crate::selection::rivals::{Rival, Standing, standing};
-use crate::thresholds::LISTED_SHARE;
+use crate::selection::rivals::{Rival, Standing, probability, standing};
+use crate::thresholds::{LISTED_SHARE, SUREST};
 
 /// The findings, each with its candidate.
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
@@ -55,6 +56,10 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         joint: joint.map(joint_name),
     };
     let last_link = as_last_link(&last.study, member.candidate);
+    let margin = last.payload.filter(|(payload, _)| *payload == member.candidate);
+    let evidence = margin.map_or(member.evidence, |(_, margin)| margin.min(member.evidence));
+    let links = margin.filter(|(_, margin)| probability(*margin) < SUREST);
+    let links = links.map(|_| (Hypothesis::of(&InertialParameters), None));
     let change = change(last, member.candidate);
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
@@ -75,7 +80,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
             other: named.other,
             parameters: named.parameters,
             // The probability is calibrated for the effects that were searched, not for one that is brought along.
-            probability: (k == 0).then(|| standing.probability(if may_be_link { 0.0 } else { member.evidence })),
+            probability: (k == 0).then(|| standing.probability(if may_be_link { 0.0 } else { evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
@@ -90,7 +95,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
                 let rivals = standing.rivals.iter().chain(&standing.as_likely);
-                for rival in rivals.chain(&last_link).map(confusable) {
+                for rival in rivals.chain(&last_link).chain(&links).map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
                     }

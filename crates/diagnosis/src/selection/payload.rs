@@ -10,7 +10,8 @@
 //! 5. [`is_of_no_mass`]: a body of a few grams is the last link.
 //! 6. [`without_moment::without_moment`]: a mass where the axes of the wrist meet may belong to a link before it.
 //! 7. [`unmounted::unmounted`]: a change of the last link that is a body which is missing.
-//! 8. [`as_last_link`]: the last link is an alternative of a payload that is named beside wrong links.
+//! 8. [`beside_few_links`]: the probability of a payload on an arm of few joints.
+//! 9. [`as_last_link`]: the last link is an alternative of a payload that is named beside wrong links.
 
 use effects::arm::InertialParameters;
 
@@ -21,7 +22,7 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::naming::{Named, name};
 use crate::selection::rivals::Rival;
-use crate::thresholds::{LEAST_MOUNTED, LEAST_PAYLOAD};
+use crate::thresholds::{BESIDE_FEW_LINKS, FEW_JOINTS, LEAST_MOUNTED, LEAST_PAYLOAD};
 
 pub mod possible;
 pub mod unmounted;
@@ -47,6 +48,17 @@ pub fn is_of_no_mass(study: &Study, resampled: &Resampled, payload: usize) -> bo
     let least = LEAST_PAYLOAD * study.mass_of_last_link();
     let is_tiny = |named: &Named| named.effect.number("mass").abs() < least;
     study.always_acts(payload) && name(study, resampled, payload).first().is_some_and(is_tiny)
+}
+
+/// The payload of `selected` that was always there, on an arm of few joints, and how much more it explains than the URDF's links could in
+/// its place (nats). A body has nearly as many parameters as the links of such an arm together, so that it explains most of what
+/// wrong links do.
+pub fn beside_few_links(study: &mut Study, selected: &Selection) -> Option<(usize, f64)> {
+    let are_few = study.data.arm.dof() <= FEW_JOINTS && study.stated.links != Some(0.0);
+    let is_constant = |&c: &usize| study.is_payload(c) && study.always_acts(c);
+    let payload = selected.set.iter().copied().filter(|_| are_few).find(is_constant)?;
+    let evidence = study.evidence_beside_best_background(selected, payload);
+    Some((payload, evidence - BESIDE_FEW_LINKS))
 }
 
 /// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
