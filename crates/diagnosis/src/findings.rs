@@ -1,6 +1,7 @@
 //! Phase 5, findings: alternatives, location of the residual, effects that are not testable, unexplained residuals, the
 //! verdict.
 
+mod at_rest;
 pub mod conclusion;
 pub mod dual_sensor;
 pub mod found;

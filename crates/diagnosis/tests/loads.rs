@@ -129,3 +129,26 @@ fn a_change_of_the_last_link_is_one_body() {
         assert_eq!(of_bodies, 1, "{:?}", sentences(&diagnosis));
     }
 }
+
+/// Rows at rest are not fitted. A push on a joint that rests is in no finding, and is noted with its time.
+#[test]
+fn a_push_on_a_joint_at_rest_is_noted() {
+    let notes = |push: f64| {
+        let injected = |variant: usize, motion: &Motion, tau: &mut [f64]| {
+            if variant == 1 && (6.0..7.5).contains(&motion.time) {
+                tau[ELBOW] += push;
+            }
+        };
+        let diagnosis = diagnosed([0.0; 4], |variant, joint| variant != 1 || joint != ELBOW, injected);
+        assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+        let notes = diagnosis.remarks.into_iter();
+        notes
+            .filter(|note| note.contains("dry friction explains"))
+            .collect::<Vec<_>>()
+    };
+    assert!(notes(0.0).is_empty());
+    let [note] = &notes(15.0)[..] else {
+        panic!("one note is expected")
+    };
+    assert!(note.starts_with("b: elbow rests between 1006."), "{note}");
+}

@@ -14,7 +14,7 @@ use super::traces::traces;
 use super::verdict::{
     ask_for_motion, beyond_limits, moves_in_training, not_enough, poorly_predicted, unexplained, verdict, with_places,
 };
-use super::{dual_sensor, sentences, transients};
+use super::{at_rest, dual_sensor, sentences, transients};
 use crate::data::Data;
 use crate::data::input::Input;
 use crate::data::motion::SourceRecording;
@@ -150,6 +150,7 @@ impl Conclusion {
             links_not_named,
             sentences::not_compared(data),
             sentences::placeholders(&data.arm, &study.strengths.least),
+            at_rest::note(last),
             torque_constants::note_on_unnamed(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];

@@ -116,7 +116,7 @@ fn had_other_form(effect: &Effect) -> bool {
 }
 
 /// A ratio of standard deviations in words; a ratio above one is not given as a percentage.
-fn of_torque(ratio: f64) -> String {
+pub fn of_torque(ratio: f64) -> String {
     if ratio >= 1.005 {
         format!("{} times the torque's standard deviation", number(ratio))
     } else {

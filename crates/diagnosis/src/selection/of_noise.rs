@@ -3,7 +3,7 @@
 use crate::data::statistics::{mean, mean_square};
 use crate::search::candidate::Candidate;
 use crate::search::study::Study;
-use crate::thresholds::{BEYOND_NOISE, MOSTLY_NOISE, NOISE_BESIDE_LINKS, NOISE_OF_A_SPRING};
+use crate::thresholds::{BEYOND_NOISE, MOSTLY_NOISE, NOISE_OF_A_SPRING};
 
 /// The variance of the noise in the first column of `candidate` on its joint, from that of the recorded positions (N² m² or N²). The spring
 /// carries the whole torque of the link, to which the accelerations of all joints contribute.
@@ -39,10 +39,10 @@ pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     let variance = column.map_or(0.0, |column| {
         study.table.spread(joint, &study.data.fitted, column).powi(2)
     });
-    let most = match evidence {
-        BEYOND_NOISE.. => MOSTLY_NOISE,
-        _ if study.strengths.common() > 0.0 => NOISE_BESIDE_LINKS,
-        _ => NOISE_OF_A_SPRING,
+    let most = if evidence < BEYOND_NOISE {
+        NOISE_OF_A_SPRING
+    } else {
+        MOSTLY_NOISE
     };
     noise(study, candidate, joint) > most * variance
 }

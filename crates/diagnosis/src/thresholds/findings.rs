@@ -158,3 +158,11 @@ pub const SURELY_SEEN: f64 = 1.0 / 6.0;
 /// The multiple of [`REST`](crate::thresholds::REST) above which the deadband of a joint's velocity is said to come from the noise of its
 /// positions: twice, so that the noise and not the speed decides. Source: none.
 pub const NOISY_REST: f64 = 2.0;
+/// The least torque at rest that neither the model nor dry friction explains, as a part of the torque's standard deviation, that is noted.
+/// Source: pushes on standing simulated arms (1.2 and more).
+pub const LEAST_AT_REST: f64 = 0.5;
+/// The shortest time for which it must last (s). Source: the same.
+pub const LEAST_REST: f64 = 0.4;
+/// The largest error in motion of a joint, as a part of the torque's standard deviation, beside which its torque at rest is noted. Source: the
+/// same.
+pub const MOST_IN_MOTION: f64 = 0.3;
