@@ -54,9 +54,6 @@ const CUT_OFF: std::ops::RangeInclusive<f64> = 0.8..=1.25;
 /// motion shows that the drive gave more torque. Source: a real robot on which a limit of 31 N m was named although 8.5
 /// % of the rows are above it.
 const MOST_REMAINING: f64 = 0.5;
-/// The least part of the rows beyond the limit that are nearer to the model with it. Source: a push of 1.5 s on a simulated arm, whose
-/// other recordings exceed the limit on 26 % of their rows.
-const LEAST_BETTER: f64 = 0.6;
 /// The largest part of the moving rows that a torque limit may clip. Source: first diagnosis.
 const MOST_CLIPPED: f64 = 0.45;
 /// The least torque limit, as a part of the torque that the motion needs by the model, which may be wrong. Source: two simulated
@@ -133,25 +130,17 @@ impl EffectKind for TorqueSaturation {
     }
 }
 
-/// Whether the torque that the limit removes is the residual of the model without it, in sum and on most rows on which it acts. A push
-/// on a few rows may be as large as the sum over all rows beyond the limit, which the drive gave in truth.
+/// Whether the torque that the limit removes is the residual of the model without it, on the rows where it acts.
 fn cuts(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(0) else { return true };
-    let least = ACTS * x.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
     let (mut with, mut without) = (0.0, 0.0);
-    let (mut acting, mut better) = (0_usize, 0_usize);
     for ((x, left), moving) in x.iter().zip(fitted.residual()).zip(fitted.moving()) {
         if *moving && *x != 0.0 {
-            let left_without = left + fitted.value(0) * x;
             with += left * left;
-            without += left_without * left_without;
-            if x.abs() > least {
-                acting += 1;
-                better += usize::from(left.abs() < left_without.abs());
-            }
+            without += (left + fitted.value(0) * x).powi(2);
         }
     }
-    with <= MOST_REMAINING * without && better as f64 >= LEAST_BETTER * acting as f64
+    with <= MOST_REMAINING * without
 }
 
 /// A limit acts on a row if its column exceeds this part of its largest value. Source: first diagnosis.
