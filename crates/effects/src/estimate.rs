@@ -48,7 +48,7 @@ pub trait Estimate {
     /// The index in a draw of the relative correction of a size.
     fn size_place(&self, size: Size) -> Option<usize>;
 
-    /// The largest magnitude of the candidate's k-th column on the rows in motion; zero if it acts on several joints.
+    /// The largest magnitude of the candidate's k-th column on the rows of its joint in motion; zero for an effect on the whole arm.
     fn shown(&self, k: usize) -> f64;
 
     /// The lowest and the highest position of the candidate's joint in the recordings (rad or m).

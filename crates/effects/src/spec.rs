@@ -297,7 +297,7 @@ pub struct Spec {
     pub is_simulated: bool,
     /// Whether it means that masses differ from the model's.
     pub is_wrong_mass: bool,
-    /// Whether it acts on the joints before its own too, so that it resembles the same effect of a neighbour.
+    /// Whether the same effect of another joint may be named in its place, because it acts on the joints before its own, too.
     pub acts_before_its_joint: bool,
     /// Whether it acts on the link side of an elastic drive.
     pub is_beyond_the_drive: bool,

@@ -70,7 +70,10 @@ pub fn described(finding: &Finding) -> String {
     let quantity = |name: &str, parameter: &Parameter, written: Written| {
         let (text, _) = numbers::value_and_interval(name, parameter);
         match written {
-            Written::Percent => text.strip_suffix(" %").unwrap_or(&text).to_owned(),
+            Written::Percent => match text.strip_suffix(" %") {
+                Some(percent) => percent.to_owned(),
+                None => numbers::quantity(100.0 * parameter.value, "1"),
+            },
             Written::InUnit => text,
         }
     };

@@ -33,11 +33,15 @@ pub fn note(last: &FinalFit) -> Option<String> {
         let order = seconds(&a.rows).total_cmp(&seconds(&b.rows));
         order.then(b.rows.start.cmp(&a.rows.start)).then(b.joint.cmp(&a.joint))
     })?;
-    let together = stretches.iter().filter(|other| {
-        let is_same = other.recording == longest.recording;
-        is_same && other.rows.start < longest.rows.end && longest.rows.start < other.rows.end
-    });
-    let together: Vec<&Held> = together.collect();
+    // Joints that rest for most of that time with it.
+    let together: Vec<&Held> = stretches
+        .iter()
+        .filter(|other| {
+            let from = times[other.rows.start].max(times[longest.rows.start]);
+            let to = times[other.rows.end - 1].min(times[longest.rows.end - 1]);
+            other.recording == longest.recording && to - from > 0.5 * seconds(&longest.rows)
+        })
+        .collect();
     let mut names: Vec<&str> = together
         .iter()
         .map(|held| data.arm.joints()[held.joint].name.as_str())
@@ -61,6 +65,7 @@ pub fn note(last: &FinalFit) -> Option<String> {
 /// All stretches, of the joints whose motion the model explains.
 fn held(last: &FinalFit) -> Vec<Held> {
     let (data, table) = (&last.study.data, &last.study.table);
+    let times = data.motions.row_times();
     let mut list = Vec::new();
     for joint in 0..data.motions.dof {
         let least = LEAST_AT_REST * data.scales.torque[joint];
@@ -68,15 +73,23 @@ fn held(last: &FinalFit) -> Vec<Held> {
         let squares = last.residual[joint].iter().zip(moving).filter(|(_, moving)| **moving);
         let (count, sum) = squares.fold((0_usize, 0.0), |(count, sum), (r, _)| (count + 1, sum + r * r));
         let is_explained = count > 0 && (sum / count as f64).sqrt() <= MOST_IN_MOTION * data.scales.torque[joint];
-        if least <= 0.0 || !is_explained {
+        // Dry friction that sets in later is in no cone.
+        let has_new_friction = last.judged.named.set.iter().any(|&c| {
+            let candidate = &last.study.candidates[c];
+            let is_friction = candidate.joint == Some(joint) && candidate.hypothesis.spec().is_friction;
+            is_friction && !last.study.always_acts(c)
+        });
+        if least <= 0.0 || !is_explained || has_new_friction {
             continue;
         }
         let mut open: Option<Held> = None;
         for row in data.resting_rows(joint) {
             let size = last.residual[joint][row].abs();
-            let continues = open
-                .as_ref()
-                .is_some_and(|held| held.rows.end == row && table.rows[held.recording].contains(&row) && size > least);
+            let continues = open.as_ref().is_some_and(|held| {
+                // The rows of two windows of a recording follow each other, and their times do not.
+                let follows = held.rows.end == row && times[row] - times[row - 1] < LEAST_REST;
+                follows && table.rows[held.recording].contains(&row) && size > least
+            });
             if !continues {
                 list.extend(open.take());
             }

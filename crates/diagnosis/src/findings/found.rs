@@ -56,10 +56,11 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         joint: joint.map(joint_name),
     };
     let last_link = as_last_link(&last.study, member.candidate);
-    let margin = last.payload.filter(|(payload, _)| *payload == member.candidate);
-    let evidence = margin.map_or(member.evidence, |(_, margin)| margin.min(member.evidence));
-    let links = margin.filter(|(_, margin)| probability(*margin) < SUREST);
-    let links = links.map(|_| (Hypothesis::of(&InertialParameters), None));
+    let few_links = last.payload.filter(|(payload, _)| *payload == member.candidate);
+    let over_links = few_links.map(|(_, nats)| nats);
+    let evidence = over_links.map_or(member.evidence, |nats| nats.min(member.evidence));
+    let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
+    let as_links = is_doubtful.then(|| (Hypothesis::of(&InertialParameters), None));
     let change = change(last, member.candidate);
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
@@ -95,7 +96,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
                 let rivals = standing.rivals.iter().chain(&standing.as_likely);
-                for rival in rivals.chain(&last_link).chain(&links).map(confusable) {
+                for rival in rivals.chain(&last_link).chain(&as_links).map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
                     }

@@ -224,10 +224,9 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         if constants < LINK_OVER_CONSTANTS {
             return None;
         }
-        let forms = special_forms(study, &judged.named);
-        let beyond = forms.iter().filter_map(|(beyond, _)| *beyond);
-        let margin = beyond.fold(evidence.min(constants), f64::min);
-        Some((margin, forms.into_iter().map(|(_, form)| confusable(form)).collect()))
+        let (beyond, forms) = special_forms(study, &judged.named);
+        let margin = evidence.min(constants).min(beyond);
+        Some((margin, forms.into_iter().map(confusable).collect()))
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
         // Beside unmodelled structure on a joint, the changes may be a part of that structure.

@@ -102,8 +102,8 @@ pub fn contacts(
     best
 }
 
-/// The largest part of a force's usual power in the torques that is no torque at all: the rounding of sums, in a window in which only
-/// joints move through whose axes the force passes.
+/// The least power of a force in a window, as a part of its usual power. Below it, only joints move through whose axes the force passes, and
+/// the sums hold rounding. Source: a window on a simulated arm with a part of 1e-20.
 const LEAST_FELT: f64 = 1e-6;
 
 /// What a force on the tool explains between two sums; nothing if its power is below `least`.

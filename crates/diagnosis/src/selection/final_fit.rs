@@ -10,7 +10,7 @@ use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
-use crate::selection::payload::{self, possible::with_possible_moments, without_moment::without_moment};
+use crate::selection::payload::{self, possible::make_moments_possible, without_moment::without_moment};
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::standing;
 use crate::selection::torque_constants;
@@ -63,7 +63,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                     study.give_up(payload);
                     drop_name(study, judged, payload, "it may have no moment about the tool's origin");
                 }
-                None if with_possible_moments(study, judged) => {}
+                None if make_moments_possible(study, judged) => {}
                 None => return resampled,
             },
         }
@@ -73,7 +73,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
 /// Fits the named effects about the arm that contains them, and removes none.
 pub fn as_given(study: &mut Study, judged: &mut Judged) -> Resampled {
     relinearise(study, judged, true);
-    if with_possible_moments(study, judged) {
+    if make_moments_possible(study, judged) {
         relinearise(study, judged, true);
     }
     resample(study, &judged.named)

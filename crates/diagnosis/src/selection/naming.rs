@@ -87,7 +87,10 @@ impl Estimate for Reader<'_> {
     }
 
     fn shown(&self, k: usize) -> f64 {
-        let (table, joint) = (&self.study.table, self.joint());
+        let table = &self.study.table;
+        let Some(joint) = self.study.candidates[self.candidate].joint else {
+            return 0.0;
+        };
         let column = self.study.candidates[self.candidate].columns.get(k);
         let place = column.and_then(|&column| table.place[joint][column]);
         let Some(place) = place else { return 0.0 };

@@ -3,13 +3,19 @@
 use crate::data::statistics::{mean, mean_square};
 use crate::search::candidate::Candidate;
 use crate::search::study::Study;
-use crate::thresholds::{BEYOND_NOISE, MOSTLY_NOISE, NOISE_OF_A_SPRING};
+use crate::thresholds::{BEYOND_NOISE, MUCH_NOISE, NOISE_OF_A_SPRING};
 
 /// The variance of the noise in the first column of `candidate` on its joint, from that of the recorded positions (N² m² or N²). The spring
 /// carries the whole torque of the link, to which the accelerations of all joints contribute.
 pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
     let data = &study.data;
     let mass = mean(data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)));
+    let term = &study.table.terms[candidate.columns[0]];
+    let kind = candidate.hypothesis.kind.get();
+    let gain = kind.noise_gain(term, mass, data.motions.cutoff);
+    if gain == 0.0 {
+        return 0.0;
+    }
     let fitted = data.motions.sources.iter().zip(&data.fitted);
     let sources: Vec<_> = fitted
         .filter(|(_, fitted)| **fitted)
@@ -21,14 +27,12 @@ pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
             acceleration * mean_square(data.rigid.iter().flat_map(|rigid| rigid.coupled_mass(joint, by)))
         })
         .sum();
-    let term = &study.table.terms[candidate.columns[0]];
-    let kind = candidate.hypothesis.kind.get();
-    of_link * kind.noise_gain(term, mass, data.motions.cutoff)
+    of_link * gain
 }
 
-/// Whether `candidate`, with this evidence (nats), may be a spring, or the compliant ends of a gap, that only filters the noise of the positions out of the link's
-/// inertial torque, in the held-out recordings as well. A part of its column is then noise; if it is not the larger part of it,
-/// overwhelming evidence suffices nevertheless.
+/// Whether `candidate`, with this evidence (nats), may only filter the noise of the positions out of the torque of the link, as a spring and
+/// the compliant ends of a gap do. Held-out recordings do not show it, because they have the same noise. Overwhelming evidence suffices
+/// nevertheless, unless much of its column is noise.
 pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     let candidate = &study.candidates[candidate];
     let Some(joint) = candidate.joint.filter(|_| candidate.hypothesis.spec().is_simulated) else {
@@ -42,7 +46,7 @@ pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     let most = if evidence < BEYOND_NOISE {
         NOISE_OF_A_SPRING
     } else {
-        MOSTLY_NOISE
+        MUCH_NOISE
     };
     noise(study, candidate, joint) > most * variance
 }

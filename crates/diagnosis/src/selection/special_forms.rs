@@ -11,9 +11,9 @@ use crate::selection::rivals::Rival;
 use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, NEARLY_NATS, SPECIAL_FORMS_TRIED};
 
 /// The special forms that the recordings do not exclude: names that were given up because wrong inertial parameters explain nearly as
-/// much, and those that are as likely beside a smaller correction of the links, or explain as much beside it, the best first. Each has its
-/// score beyond that of `selected`, the final fit (nats), if it is among the latter.
-pub fn special_forms(study: &Study, selected: &Selection) -> Vec<(Option<f64>, Rival)> {
+/// much, then those that are as likely beside a smaller correction of the links, or explain as much beside it. Also the least score of
+/// one of the latter beyond that of `selected`, the final fit (nats); infinite without one.
+pub fn special_forms(study: &Study, selected: &Selection) -> (f64, Vec<Rival>) {
     let links = |strengths: &Strengths| strengths.links.clone();
     let is_smaller =
         |strengths: &Strengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
@@ -25,24 +25,18 @@ pub fn special_forms(study: &Study, selected: &Selection) -> Vec<(Option<f64>, R
         .map(|(next, form)| (next.score, form))
         .collect();
     scores.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let beyond = |form: Rival| {
-        let best = scores.iter().find(|(_, other)| *other == form);
-        best.map(|(score, _)| score - selected.score)
-    };
-    let mut forms: Vec<(Option<f64>, Rival)> = Vec::new();
-    for form in study
-        .given_up
-        .iter()
-        .copied()
-        .chain(scores.iter().map(|(_, form)| *form))
-    {
-        let is_named = |&c: &usize| (study.candidates[c].hypothesis, study.candidates[c].joint) == form;
-        if !forms.iter().any(|(_, known)| *known == form) && !selected.set.iter().any(is_named) {
-            forms.push((beyond(form), form));
+    let margin = scores
+        .first()
+        .map_or(f64::INFINITY, |(score, _)| score - selected.score);
+    let mut forms: Vec<Rival> = Vec::new();
+    for form in study.given_up.iter().chain(scores.iter().map(|(_, form)| form)) {
+        let is_named = |&c: &usize| (study.candidates[c].hypothesis, study.candidates[c].joint) == *form;
+        if !forms.contains(form) && !selected.set.iter().any(is_named) {
+            forms.push(*form);
         }
     }
     forms.truncate(MOST_SPECIAL_FORMS);
-    forms
+    (margin, forms)
 }
 
 /// The special forms that are nearly as likely as a `link` that differs more than most links, beside one that does not: each with its

@@ -12,7 +12,7 @@ pub const LEAST_DRIVE: f64 = 0.01;
 pub const NOISE_OF_A_SPRING: f64 = 0.055;
 /// The part with which a spring is not named, whatever the evidence. Source: the same cases; a false one of the heavy arm has 0.39 and 337
 /// nats.
-pub const MOSTLY_NOISE: f64 = 0.25;
+pub const MUCH_NOISE: f64 = 0.25;
 /// The evidence with which a spring with a smaller part is named nevertheless (nats). Source: as for [`NOISE_OF_A_SPRING`]; the other
 /// false ones had 289 at most.
 pub const BEYOND_NOISE: f64 = 300.0;
@@ -128,9 +128,8 @@ pub const DIRECTION_NATS: f64 = 1.0;
 /// The least payload beside a link as it is in the URDF, as a part of the last link's mass. Source: 131 simulated recordings of arms whose links
 /// are wrong by 3 %, in three of which a payload of −8 to 7 g was named.
 pub const LEAST_PAYLOAD: f64 = 0.03;
-/// The most joints of an arm on which wrong links explain most of what a payload does. Source: 134 simulated cases without a payload of
-/// ten such arms, in 18 of which one was named, with 6 to 52 nats more than wrong links (one with 93); 21 true payloads on seven of these
-/// arms have 14 to 289.
+/// The most joints of an arm on which wrong links explain most of what a payload does. Source: simulated cases of ten such
+/// arms; nine false payloads have 6 to 52 nats more than wrong links, one has 93, and 21 true ones on seven of these arms have 14 to 289.
 pub const FEW_JOINTS: usize = 4;
-/// The evidence of a payload against wrong links that is no evidence on such an arm (nats). Source: as for [`FEW_JOINTS`].
+/// What is subtracted on such an arm from the evidence of a payload against wrong links (nats). Source: as for [`FEW_JOINTS`].
 pub const BESIDE_FEW_LINKS: f64 = 40.0;

@@ -73,8 +73,8 @@ fn partner(term: &Term, joint: usize) -> Option<usize> {
     }
 }
 
-/// The inertia of a coupling, over its viscous friction, from which on a negative one refutes it (s). Inertias of the links that adapt leave a
-/// small one. Source: four simulated couplings without inertia have −0.0045 to 0.0016.
+/// A negative inertia that is larger than this multiple of the viscous friction (s) refutes a coupling. Smaller ones come from corrected
+/// inertias of the links. Source: four simulated couplings without inertia have −0.0045 to 0.0016 s.
 const NOTABLE_INERTIA: f64 = 0.01;
 
 impl EffectKind for TransmissionCoupling {
@@ -104,8 +104,8 @@ impl EffectKind for TransmissionCoupling {
         forms
     }
 
-    /// The viscous friction must be clearly positive and the inertia neither clearly nor notably negative, because a drive that turns with
-    /// both joints has both, in the sense in which it turns with them. The search allows other values.
+    /// The viscous friction must be clearly positive and the inertia not both clearly and notably negative, because a drive that turns
+    /// with both joints has both, in the sense in which it turns with them. The search allows other values.
     fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
         let sense = effect.number("viscous").signum();
         let is_clear = |[low, high]: [f64; 2]| (sense * low).min(sense * high) > 0.0;
@@ -188,5 +188,7 @@ mod tests {
         assert!(!is_certain([-0.73, 1.17], [-1.3, -1.1]));
         assert!(!is_certain([-0.73, 1.17], [0.1, 0.2]));
         assert!(!is_certain([1.0, 2.0], [-1.3, -1.1]));
+        // The inertias of corrected links leave a small one.
+        assert!(is_certain([1.0, 2.0], [-0.01, -0.005]));
     }
 }

@@ -83,11 +83,11 @@ const MOST_TAKEN_BACK: f64 = 0.5;
 /// sign at reversals. Source: 44 simulated cases of four published arms with Stribeck velocities of 0.03 to 0.15 rad/s
 /// show 0.3 and more.
 const LEAST_SHOWN: f64 = 0.25;
-/// If rows in motion show less than this part, the intervals extend to what they do not exclude. Source: the same cases; with more,
+/// If rows in motion show less than this part, the intervals extend to the sizes that the rows do not exclude. Source: the same cases; with more,
 /// 19 of 19 sizes are within 15 % of the truth.
 const FULLY_SHOWN: f64 = 0.6;
-/// The multiple of the additional breakaway friction, at a Stribeck velocity smaller by this factor, that rows do not exclude that
-/// show it in part. Source: the same cases, 3.3; the three-joint arm at 0.01 rad/s, 5.5.
+/// Where the rows show only a part, the additional breakaway friction may be larger by this factor, with a Stribeck velocity that is smaller
+/// by it. Source: the same cases, 3.3; the three-joint arm at 0.01 rad/s, 5.5.
 const EXTRAPOLATED: f64 = 6.0;
 /// A row is slow if more than this part of the additional breakaway friction remains there.
 const FADED: f64 = 0.5;
@@ -175,7 +175,7 @@ fn falls(fitted: &dyn Fitted) -> bool {
     taken_back < MOST_TAKEN_BACK * fitted.value(1)
 }
 
-/// Whether moving rows show most of the additional friction, and on most of them it has fallen below half, so that it is a
+/// Whether moving rows show a part of the additional friction, and on most of them it has fallen below half, so that it is a
 /// friction at low speed.
 fn fades(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(1) else { return false };

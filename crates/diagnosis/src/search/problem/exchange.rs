@@ -91,7 +91,7 @@ impl Problem<'_> {
                         return None;
                     }
                     let without = self.without(&selected, removed);
-                    // The replacement acts where the member did, or is the same effect of another joint.
+                    // The replacement acts where the member did, or is the same effect of another joint, if that may be in its place.
                     let others: Vec<usize> = allowed
                         .iter()
                         .copied()

@@ -9,7 +9,7 @@ use crate::selection::judge::{self, Judged};
 
 /// Gives the payload, if its moments are impossible, the possible ones that the recordings contradict least: it is replaced by the
 /// payload without moments in the fit, which has them as its tensor. Returns whether a payload was replaced.
-pub fn with_possible_moments(study: &mut Study, judged: &mut Judged) -> bool {
+pub fn make_moments_possible(study: &mut Study, judged: &mut Judged) -> bool {
     let mut payloads = judged.named.set.iter().copied().filter(|&c| study.is_payload(c));
     // Two payloads have one tensor in the fit, if neither has moments.
     let (Some(payload), None) = (payloads.next(), payloads.next()) else {
