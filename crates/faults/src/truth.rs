@@ -122,9 +122,4 @@ impl Injected {
     pub fn is_not_mounted(&self) -> bool {
         self.effect == "payload" && self.number("mass").is_some_and(|mass| mass < 0.0)
     }
-
-    /// Whether it is outside the catalogue.
-    pub fn is_outside_the_catalogue(&self) -> bool {
-        crate::is_outside(&self.effect)
-    }
 }

@@ -40,7 +40,7 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         }
         let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;
         let effect: Injected = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
-        if !effect.is_outside_the_catalogue() {
+        if !faults::is_outside(&effect.effect) {
             // Keys that the catalogue does not have belong to this command; the others are checked as for any effect.
             let own = form_parameters(&effect.effect);
             for key in ["onset", "form"].iter().chain(own) {
