@@ -292,6 +292,13 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
     }
 }
 
+/// The experiment for a residual that changes too quickly for the recordings, as where a link swings in a gap.
+pub fn look_behind_the_drive(joint: &str) -> String {
+    format!(
+        "the residual of {joint} changes faster than these recordings follow, as where a link swings in a gap or on a soft gear: record a second encoder on the link side, or turn {joint} back and forth slowly at a constant load"
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use effects::sensor::TorqueScale;

@@ -10,7 +10,7 @@ use crate::findings::sentences;
 use crate::findings::transients::Transients;
 use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::selection::FinalFit;
-use crate::selection::predict::{autocorrelation, poor, structured};
+use crate::selection::predict::{autocorrelation, poor, structured, swinging};
 use crate::thresholds::{
     LEAST_MOTION, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
 };
@@ -96,18 +96,33 @@ pub fn poorly_predicted(
         let is_unrelated = !has_findings && error >= PARTLY;
         let is_poor = is_unrelated || poor(this).is_some();
         let in_training = structured_in_training(last, joint);
-        if is_known || !(is_poor || structured(this).is_some() || in_training.is_some()) {
+        if is_known {
             continue;
         }
-        let error = error.max(in_training.unwrap_or(0.0));
+        let is_regular = is_poor || structured(this).is_some() || in_training.is_some();
+        let (depends_on, next) = if is_regular {
+            (Vec::new(), sentences::next_experiment(name, None))
+        } else if swinging(this).is_some() && !is_connected(last, joint) {
+            (vec![Regressor::History.into()], sentences::look_behind_the_drive(name))
+        } else {
+            continue;
+        };
         unexplained.push(Unexplained {
             joint: name.clone(),
-            share: error,
-            depends_on: Vec::new(),
-            next: sentences::next_experiment(name, None),
+            share: error.max(in_training.unwrap_or(0.0)),
+            depends_on,
+            next,
             time: Vec::new(),
         });
     }
+}
+
+/// Whether a gap or a spring between the drive and the link of `joint` is named.
+fn is_connected(last: &FinalFit, joint: usize) -> bool {
+    let study = &last.study;
+    let on_joint = |&&c: &&usize| study.candidates[c].joint == Some(joint);
+    let mut named = last.judged.named.set.iter().filter(on_joint);
+    named.any(|&c| study.terms(c).iter().any(|term| term.law.link_side.is_some()))
 }
 
 /// Asks for a training recording of joints that none moves.

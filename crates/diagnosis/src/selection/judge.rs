@@ -129,7 +129,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
     }
     if let Some(held) = held {
         while let Some((rule, bad)) = harmful(&problem, held, &kept) {
-            let next = problem.choose(kept.others(bad), &kept.fit.weights);
+            // What a gap brought along, the inertia of its rotor, may remain; without it, the links would stand for it.
+            let next = problem.without(&kept, bad);
             study.note(rule, &kept, &next);
             kept = next;
         }

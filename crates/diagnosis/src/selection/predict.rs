@@ -9,7 +9,8 @@ use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 use crate::report::JointFit;
 use crate::thresholds::{
-    LEAST_ROWS, POOR, POOR_ABOVE_NOISE, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE,
+    LEAST_ROWS, POOR, POOR_ABOVE_NOISE, REMEMBERS, RESIDUAL_LAG, STRUCTURED, STRUCTURED_ABOVE_NOISE, SWINGING, SWINGS,
+    SWINGS_ABOVE_NOISE,
 };
 
 /// The residual of the model with the effects and the background of `fit` on all rows of one joint. At rest, dry friction may hold
@@ -138,6 +139,17 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
 pub fn poor(fit: &JointFit) -> Option<f64> {
     let error = fit.error();
     (error >= POOR && error * fit.torque_std >= POOR_ABOVE_NOISE * fit.noise).then_some(error)
+}
+
+/// The error (NRMSE) of a joint with the findings, if it is far above the noise and has lost its memory within [`RESIDUAL_LAG`], as that of a
+/// link that swings against its drive.
+pub fn swinging(fit: &JointFit) -> Option<f64> {
+    let error = fit.error();
+    let least = error.min(fit.train_nrmse_augmented);
+    let swings = least >= SWINGING
+        && least * fit.torque_std >= SWINGS_ABOVE_NOISE * fit.noise
+        && fit.residual_autocorrelation < SWINGS;
+    swings.then_some(error)
 }
 
 /// The autocorrelation of a signal over [`RESIDUAL_LAG`], on the rows that count.

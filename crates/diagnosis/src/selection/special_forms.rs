@@ -2,6 +2,7 @@
 //! the correction of all links does without them.
 
 use effects::Acts;
+use effects::drive::RotorInertia;
 use rayon::prelude::*;
 
 use crate::regression::strengths::Strengths;
@@ -72,8 +73,9 @@ fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Se
     let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
     let is_free = |&c: &usize| {
         let candidate = &study.candidates[c];
+        // A rotor adds to the inertia of its link about the joint's axis, which is all that a first link on a vertical axis shows.
         candidate.hypothesis.name().is_some()
-            && candidate.hypothesis.spec().may_be_inertial
+            && (candidate.hypothesis.spec().may_be_inertial || candidate.hypothesis.is(&RotorInertia))
             && problem.acts(candidate) == Acts::Always
             && !selected
                 .set
