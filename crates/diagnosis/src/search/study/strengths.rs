@@ -10,8 +10,8 @@ use crate::regression::fit::Products;
 use crate::regression::strengths::{Part, Strengths};
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
-    AS_LIKELY_BESIDE_EXACT, HOPELESS_EXCHANGE, LINK_STRENGTHS, MOST_CONSTANT, MOST_DEVIATIONS, MOST_LATER_GAIN,
-    MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS, PER_IMITATION,
+    AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, HOPELESS_EXCHANGE, LINK_STRENGTHS, MOST_CONSTANT,
+    MOST_DEVIATIONS, MOST_LATER_GAIN, MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS, PER_IMITATION,
 };
 
 /// The largest number of effects that may together replace a part of the background.
@@ -100,12 +100,15 @@ impl Study {
     }
 
     /// The strongest background in which all links differ from the URDF and which is nearly as likely as that of `selected` by its score,
-    /// and `selected` fitted again beside it. `None` if there is none, if all of the links differ already, if none do
+    /// and `selected` fitted again beside it; for a payload on an arm of few joints, the most likely one. `None` if there is none, if all of the links differ already, if none do
     /// and no payload is selected, whose mass depends on them, or if the user states the strengths.
     pub fn with_all_links(&self, selected: &Selection) -> Option<(Strengths, Selection)> {
         let links = &self.strengths.links;
         let has_payload = selected.set.iter().any(|&c| self.is_payload(c));
-        let margin = if links.iter().any(|&rho| rho > 0.0) {
+        let are_few = has_payload && links.len() <= FEW_JOINTS;
+        let margin = if are_few {
+            BESIDE_FEW_LINKS
+        } else if links.iter().any(|&rho| rho > 0.0) {
             NEARLY_AS_LIKELY
         } else if has_payload {
             AS_LIKELY_BESIDE_EXACT
@@ -125,9 +128,15 @@ impl Study {
             (strengths, next)
         };
         let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
-        strongest_first
+        let mut nearly = strongest_first
             .map(at_least)
-            .find(|(_, next)| next.score < selected.score + margin)
+            .filter(|(_, next)| next.score < selected.score + margin);
+        if are_few {
+            // So wide a margin holds links that nobody would expect.
+            nearly.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
+        } else {
+            nearly.next()
+        }
     }
 
     /// `selected` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
