@@ -13,6 +13,7 @@ use crate::thresholds::{RESTING, RESTING_REACH, ROUNDING};
 
 pub mod channels;
 pub mod cutoff;
+mod gravity;
 pub mod input;
 pub mod known;
 pub mod measure;
@@ -44,6 +45,9 @@ pub struct Data {
     pub seconds: Vec<f64>,
     /// Whether a recording is fitted.
     pub fitted: Vec<bool>,
+    /// Known dry friction on all rows, one list per joint: what was subtracted from the torques beyond the torque that is the same in
+    /// both directions, and the largest torque that it holds at rest (N m or N).
+    known_dry: Option<[Vec<Vec<f64>>; 2]>,
 }
 
 impl Data {
@@ -79,7 +83,7 @@ impl Data {
         let mut motions = cutoff::filtered(inputs, options.cutoff, arm);
         let measured = on_rows(&motions, |_, chunk, joint| chunk.tau[joint].clone());
         let torque = measure::deviations(&motions);
-        let mut recorded = known.take_off(&mut motions);
+        let known::TakenOff { mut recorded, dry } = known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
         let chunks = motions.chunks.par_iter();
@@ -88,6 +92,12 @@ impl Data {
             .collect();
         let mut scales = measure::scales(&motions, torque);
         known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);
+        for (chunk, recorded) in motions.chunks.iter_mut().zip(&recorded) {
+            let joints = recorded.iter().zip(&chunk.tau);
+            let minus =
+                |(recorded, left): (&Vec<f64>, &Vec<f64>)| recorded.iter().zip(left).map(|(a, b)| a - b).collect();
+            chunk.known = joints.map(minus).collect();
+        }
         // A channel is judged as it was recorded: what known effects leave of it may be noise.
         let mut exchange = |motions: &mut Motions| {
             for (chunk, tau) in motions.chunks.iter_mut().zip(&mut recorded) {
@@ -101,13 +111,24 @@ impl Data {
             scales.torque[joint] = 0.0;
             motions.remarks.push(why.remark(&arm.joints()[joint].name));
         }
+        let weightless = if by_model {
+            gravity::without(&motions, &rigid, &scales, arm.gravity())
+        } else {
+            Vec::new()
+        };
+        if !weightless.is_empty() {
+            let names: Vec<&str> = weightless.iter().map(|&joint| &*arm.joints()[joint].name).collect();
+            motions.remarks.push(gravity::remark(&names));
+            weightless.iter().for_each(|&joint| scales.torque[joint] = 0.0);
+        }
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
         let noise = measure::noise(&motions, &rigid, &fitted);
         // A channel without noise and torque must not have an infinite weight.
         let least = (ROUNDING * scales.torque.iter().copied().fold(0.0, f64::max)).powi(2);
         let floor =
             |(noise, torque): (&f64, &f64)| (noise + (options.thresholds.tolerance * torque).powi(2)).max(least);
-        Ok(Self {
+        let known_dry = dry.map(|both| both.map(|list| on_rows(&motions, |k, _, joint| list[k][joint].clone())));
+        let mut data = Self {
             seconds: measure::seconds(&motions),
             nominal: on_rows(&motions, |k, chunk, joint| {
                 let pairs = chunk.tau[joint].iter().zip(&rigid[k].tau[joint]);
@@ -121,6 +142,38 @@ impl Data {
             scales,
             measured,
             fitted,
+            known_dry,
+        };
+        data.hold_at_rest();
+        Ok(data)
+    }
+
+    /// Takes from the nominal residual at rest what known dry friction holds.
+    fn hold_at_rest(&mut self) {
+        if self.known_dry.is_none() {
+            return;
+        }
+        for joint in 0..self.motions.dof {
+            for row in self.resting_rows(joint) {
+                let [subtracted, holds] = self.known_dry_at(joint, row);
+                let free = self.nominal[joint][row] + subtracted;
+                self.nominal[joint][row] = free - free.clamp(-holds, holds);
+            }
+        }
+    }
+
+    /// Whether some dry friction of `joint` is known.
+    pub fn has_known_dry_friction(&self, joint: usize) -> bool {
+        let known = self.known_dry.as_ref();
+        known.is_some_and(|[_, holds]| holds[joint].iter().any(|holds| *holds != 0.0))
+    }
+
+    /// The known dry friction of `joint` on a row: what the measured torque lacks of it, and the largest torque that it holds at rest
+    /// (N m or N).
+    pub fn known_dry_at(&self, joint: usize, row: usize) -> [f64; 2] {
+        let known = self.known_dry.as_ref();
+        known.map_or([0.0; 2], |[subtracted, holds]| {
+            [subtracted[joint][row], holds[joint][row].abs()]
         })
     }
 

@@ -5,6 +5,7 @@ mod at_rest;
 pub mod conclusion;
 pub mod dual_sensor;
 pub mod found;
+mod gaps;
 pub mod inertials;
 pub mod locate;
 pub mod observability;

@@ -112,6 +112,7 @@ fn found(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resa
     loop {
         let refused = study.refused();
         let selected = plan::search(study, progress);
+        let selected = payload::compact::with_drives(study, selected);
         progress(Step::new(0.6, "testing the selected effects"));
         let (products, held) = (study.training_products(), study.held_products());
         let mut judged = judge::judge(study, &products, held.as_ref(), selected);

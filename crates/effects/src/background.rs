@@ -74,7 +74,7 @@ pub static OWN_LOAD: Law = Law {
 /// The rigid torque of a joint; its coefficient is the relative error of the torque constant.
 pub static GAIN: Law = Law {
     name: "gain",
-    column: |_, joint, motion| Some(motion.rigid.tau[joint].clone()),
+    column: |_, joint, motion| Some(motion.of_model(joint)),
     needs_model: true,
     ..Law::PLAIN
 };

@@ -57,7 +57,7 @@ pub static ACCELERATION: Law = Law {
 pub static RIGID: Law = Law {
     name: "rigid",
     column: |term, joint, motion| {
-        let mut torque = motion.rigid.tau[joint].clone();
+        let mut torque = motion.of_model(joint);
         if let (Some(_), Some(rest)) = (term.onset(), motion.rigid.rest.get(joint)) {
             torque.iter_mut().zip(rest).for_each(|(sum, rest)| *sum += rest);
         }

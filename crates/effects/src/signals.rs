@@ -75,8 +75,10 @@ pub struct Signals<'a> {
     pub qd: &'a [Vec<f64>],
     /// Accelerations (rad/s² or m/s²).
     pub qdd: &'a [Vec<f64>],
-    /// Measured torques (N m or N).
+    /// Measured torques without those of known effects (N m or N).
     pub tau: &'a [Vec<f64>],
+    /// The torques of known effects, which a torque constant multiplies, too; none where empty (N m or N).
+    pub known: &'a [Vec<f64>],
     /// The rigid model.
     pub rigid: Rigid<'a>,
     /// Typical and largest values of each joint.
@@ -99,6 +101,15 @@ impl Signals<'_> {
     /// The time of a tick (s).
     pub fn time(&self, tick: usize) -> f64 {
         self.start + tick as f64 * self.period
+    }
+
+    /// The torque of the model on a joint: τ and that of the known effects (N m or N).
+    pub fn of_model(&self, joint: usize) -> Vec<f64> {
+        let mut torque = self.rigid.tau[joint].clone();
+        if let Some(known) = self.known.get(joint) {
+            torque.iter_mut().zip(known).for_each(|(sum, known)| *sum += known);
+        }
+        torque
     }
 
     /// A signal on the ticks.

@@ -166,6 +166,7 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
         qd: &qd,
         qdd: &qdd,
         tau: &tau,
+        known: &[],
         rigid: Rigid {
             tau: &tau,
             rotors: &[],

@@ -145,6 +145,24 @@ impl Corrected {
         }
     }
 
+    /// The dry friction of each joint in a `prediction` for these velocities and accelerations at `time`, as the drive reports it: what
+    /// it adds there beyond the torque that is the same in both directions, and the largest torque that it holds at rest (N m or N).
+    pub fn dry_friction(&self, time: f64, qd: &[f64], qdd: &[f64], prediction: &Prediction) -> Vec<[f64; 2]> {
+        let time = Some(time);
+        let mut friction = vec![[0.0; 2]; self.dof()];
+        for (joint, dry) in &self.machine.dry {
+            let at = Circumstance {
+                time,
+                load: self.gear_load(*joint, &prediction.rigid, qdd),
+            };
+            let (direction, factor) = (sign(qd[*joint]), self.torque_factor(*joint, time));
+            let added = direction * dry.level(qd[*joint], at) + (direction.abs() - 1.0) * dry.bias();
+            friction[*joint][0] += factor * added;
+            friction[*joint][1] += factor * dry.level(0.0, at);
+        }
+        friction
+    }
+
     /// The torque that the gear of `joint` transmits to the links: the rigid torque without the rotor's.
     fn gear_load(&self, joint: usize, rigid: &[f64], qdd: &[f64]) -> f64 {
         rigid[joint] - self.machine.arm.joints()[joint].rotor_inertia * qdd[joint]

@@ -17,6 +17,16 @@ pub struct Known {
     of_torque: Vec<Effect>,
 }
 
+/// What was subtracted, each `[chunk][joint][tick]`.
+#[derive(Default)]
+pub struct TakenOff {
+    /// The torques as they were recorded (N m or N); empty if no effect is known.
+    pub recorded: Vec<Vec<Vec<f64>>>,
+    /// Known dry friction, if there is any: what was subtracted beyond the torque that is the same in both directions, and the
+    /// largest torque that it holds at rest (N m or N).
+    pub dry: Option<[Vec<Vec<Vec<f64>>>; 2]>,
+}
+
 impl Known {
     /// `arm` with `effects`.
     ///
@@ -40,19 +50,23 @@ impl Known {
         })
     }
 
-    /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets. Returns the torques as they
-    /// were recorded, `[chunk][joint][tick]`; nothing if no effect is known.
-    pub fn take_off(&self, motions: &mut Motions) -> Vec<Vec<Vec<f64>>> {
+    /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets.
+    pub fn take_off(&self, motions: &mut Motions) -> TakenOff {
         let Some(model) = &self.model else {
-            return Vec::new();
+            return TakenOff::default();
         };
         let recorded = motions.chunks.iter().map(|chunk| chunk.tau.clone()).collect();
+        let has_dry = !model.machine().dry.is_empty();
+        let mut dry: [Vec<Vec<Vec<f64>>>; 2] = Default::default();
         let dof = self.arm.dof();
         let mut workspace = Workspace::new(dof);
         let mut prediction = Prediction::new(dof);
         let mut scratch = arm::Workspace::new(&self.arm);
         let mut rigid = vec![0.0; dof];
         for chunk in &mut motions.chunks {
+            for list in dry.iter_mut().filter(|_| has_dry) {
+                list.push(vec![Vec::with_capacity(chunk.ticks()); dof]);
+            }
             for tick in 0..chunk.ticks() {
                 let at = |signal: &[Vec<f64>]| -> Vec<f64> { signal.iter().map(|joint| joint[tick]).collect() };
                 let (q, qd, qdd) = (at(&chunk.q), at(&chunk.qd), at(&chunk.qdd));
@@ -60,13 +74,26 @@ impl Known {
                 let standing: Vec<f64> = q.iter().zip(model.encoder_offsets()).map(|(q, o)| q + o).collect();
                 self.arm
                     .inverse_dynamics(&mut scratch, &standing, &qd, &qdd, &mut rigid);
+                if has_dry {
+                    let friction = model.dry_friction(chunk.time(tick), &qd, &qdd, &prediction);
+                    for (joint, both) in friction.into_iter().enumerate() {
+                        for (list, value) in dry.iter_mut().zip(both) {
+                            if let Some(of_chunk) = list.last_mut() {
+                                of_chunk[joint].push(value);
+                            }
+                        }
+                    }
+                }
                 for joint in 0..dof {
                     chunk.q[joint][tick] = standing[joint];
                     chunk.tau[joint][tick] -= prediction.torque(joint) - rigid[joint];
                 }
             }
         }
-        recorded
+        TakenOff {
+            recorded,
+            dry: has_dry.then_some(dry),
+        }
     }
 
     /// Subtracts the known effects that are functions of the commanded torque, which is `recorded` (`[chunk][joint][tick]`) where any

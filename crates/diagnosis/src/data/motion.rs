@@ -36,8 +36,10 @@ pub struct Chunk {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations (rad/s² or m/s²).
     pub qdd: Vec<Vec<f64>>,
-    /// Torques (N m or N).
+    /// Torques without those of known effects (N m or N).
     pub tau: Vec<Vec<f64>>,
+    /// The torques of known effects; none where empty (N m or N).
+    pub known: Vec<Vec<f64>>,
     /// The second filter, from ticks to rows.
     pub kernel: Kernel,
     /// The number of ticks between rows.
@@ -247,6 +249,7 @@ impl Motions {
                 qd: each(&recording.q, Kernel::first),
                 qdd: each(&recording.q, Kernel::second),
                 tau: each(&recording.tau, Kernel::smooth),
+                known: Vec::new(),
                 kernel: kernel.clone(),
                 stride,
             }

@@ -60,6 +60,7 @@ impl Rigid {
             qd: &chunk.qd,
             qdd: &chunk.qdd,
             tau: &chunk.tau,
+            known: &chunk.known,
             rigid: effects::Rigid {
                 tau: &self.tau,
                 rotors: &self.rotors,

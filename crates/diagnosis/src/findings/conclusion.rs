@@ -12,9 +12,10 @@ use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
 use super::verdict::{
-    ask_for_motion, beyond_limits, moves_in_training, not_enough, poorly_predicted, unexplained, verdict, with_places,
+    ask_for_motion, beyond_limits, known_too_large, moves_in_training, not_enough, poorly_predicted, unexplained,
+    verdict, with_places,
 };
-use super::{at_rest, dual_sensor, sentences, transients};
+use super::{at_rest, dual_sensor, gaps, sentences, transients};
 use crate::data::Data;
 use crate::data::input::Input;
 use crate::data::motion::SourceRecording;
@@ -96,10 +97,12 @@ impl Conclusion {
             findings.clear();
         }
         let fit = fit(last);
+        gaps::widen(last, &fit, &mut findings);
         let located = locate(data, table, &data.nominal, residual);
         let mut unexplained = unexplained(last, &fit, &transients, &located);
         let has_findings = !findings.is_empty();
         poorly_predicted(last, &fit, has_findings, &mut unexplained);
+        known_too_large(last, &fit, &options.known, &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();

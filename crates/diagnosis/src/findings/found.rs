@@ -75,13 +75,15 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         } else {
             rotor_share(last, candidate)
         };
-        // A mass that may be zero is that of no body: only moments are determined, which a link may have, too.
-        let may_be_link = last_link.is_some() && may_be_nothing(named.effect.spec(), &named.parameters);
+        // A mass that may be zero is that of no body: only moments are determined, which a link may have, too. A change that may be zero is
+        // no clear change.
+        let may_be_none =
+            (last_link.is_some() || change.is_some()) && may_be_nothing(named.effect.spec(), &named.parameters);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
             // The probability is calibrated for the effects that were searched, not for one that is brought along.
-            probability: (k == 0).then(|| standing.probability(if may_be_link { 0.0 } else { evidence })),
+            probability: (k == 0).then(|| standing.probability(if may_be_none { 0.0 } else { evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
@@ -131,8 +133,13 @@ fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
     let this = &study.candidates[candidate];
     let is_beside = |&other: &usize| {
         let other = &study.candidates[other];
-        other.hypothesis == this.hypothesis && other.joint == this.joint
+        // Friction of another form contains a level of Coulomb friction.
+        let is_such = other.hypothesis == this.hypothesis || other.hypothesis.generalises() == Some(this.hypothesis);
+        is_such && other.joint == this.joint
     };
+    // What remains of a spring today may be a part of links that are wrong.
+    let may_remain =
+        this.hypothesis.spec().may_be_inertial && this.joint.is_some() && study.strengths.strongest() > 0.0;
     let was_there = last
         .judged
         .named
@@ -144,7 +151,7 @@ fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
         Acts::Always => None,
         Acts::Since(_) if was_there => Some(Change::Increased),
         Acts::Since(_) => Some(Change::Added),
-        Acts::Until(_) if was_there => Some(Change::Reduced),
+        Acts::Until(_) if was_there || may_remain => Some(Change::Reduced),
         Acts::Until(_) => Some(Change::Removed),
     }
 }

@@ -166,12 +166,18 @@ pub fn placeholders(arm: &Arm, least: &[f64]) -> Option<String> {
     })
 }
 
+/// The probability below which a change is stated with it. Source: choice.
+const SURE_CHANGE: f64 = 0.9;
+
 /// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
 /// phrase, with all of its places in this `order` of the joints.
 pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>, order: impl Fn(&str) -> Option<usize>) -> Vec<String> {
     let mut phrases: Vec<(String, Vec<&str>)> = Vec::new();
     for finding in findings {
-        let what = described(finding, &plain);
+        let mut what = described(finding, &plain);
+        if let Some(probability) = finding.probability.filter(|&probability| probability < SURE_CHANGE) {
+            what += &format!(" (probability {probability:.2})");
+        }
         let place = finding.joint.as_deref().unwrap_or("the whole arm");
         match phrases.iter_mut().find(|(known, _)| *known == what) {
             Some((_, places)) => places.push(place),
@@ -296,6 +302,13 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
 pub fn look_behind_the_drive(joint: &str) -> String {
     format!(
         "the residual of {joint} changes faster than these recordings follow, as where a link swings in a gap or on a soft gear: record a second encoder on the link side, or turn {joint} back and forth slowly at a constant load"
+    )
+}
+
+/// The advice for a joint of which full identification explains more than the model with its known effects does.
+pub fn without_known(joint: &str, error: f64, identified: f64) -> String {
+    format!(
+        "the known effects of {joint} do not fit these recordings: full identification without them leaves an error of {identified:.2}, and the model with them {error:.2}; diagnose these recordings without the known effects of {joint}, and compare the sizes"
     )
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use arm::Arm;
-use effects::{Quantity, Regressor};
+use effects::{Effect, Quantity, Regressor};
 
 use crate::data::statistics::rms;
 use crate::findings::sentences;
@@ -13,6 +13,7 @@ use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, poor, structured, swinging};
 use crate::thresholds::{
     LEAST_MOTION, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
+    WITHOUT_KNOWN,
 };
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
@@ -102,7 +103,7 @@ pub fn poorly_predicted(
         let is_regular = is_poor || structured(this).is_some() || in_training.is_some();
         let (depends_on, next) = if is_regular {
             (Vec::new(), sentences::next_experiment(name, None))
-        } else if swinging(this).is_some() && !is_connected(last, joint) {
+        } else if swinging(this).is_some() {
             (vec![Regressor::History.into()], sentences::look_behind_the_drive(name))
         } else {
             continue;
@@ -117,12 +118,35 @@ pub fn poorly_predicted(
     }
 }
 
-/// Whether a gap or a spring between the drive and the link of `joint` is named.
-fn is_connected(last: &FinalFit, joint: usize) -> bool {
-    let study = &last.study;
-    let on_joint = |&&c: &&usize| study.candidates[c].joint == Some(joint);
-    let mut named = last.judged.named.set.iter().filter(on_joint);
-    named.any(|&c| study.terms(c).iter().any(|term| term.law.link_side.is_some()))
+/// Adds the joints with effects that are `known`, of which full identification, without knowing any, explains clearly more. A known effect
+/// that is larger than that of the recordings has no other name.
+pub fn known_too_large(
+    last: &FinalFit,
+    fit: &BTreeMap<String, JointFit>,
+    known: &[Effect],
+    unexplained: &mut Vec<Unexplained>,
+) {
+    let joints = last.study.data.arm.joints().iter().zip(&last.identified);
+    for (joint, identified) in joints {
+        let (Some(this), Some(identified)) = (fit.get(&joint.name), *identified) else {
+            continue;
+        };
+        let error = this.error();
+        let is_here = known.iter().any(|effect| effect.joint() == Some(&*joint.name));
+        let is_open = unexplained.iter().any(|residual| residual.joint == joint.name);
+        let explains_more = error >= STRUCTURED
+            && error * this.torque_std >= STRUCTURED_ABOVE_NOISE * this.noise
+            && identified <= WITHOUT_KNOWN * error;
+        if is_here && explains_more && !is_open {
+            unexplained.push(Unexplained {
+                joint: joint.name.clone(),
+                share: error,
+                depends_on: vec![Regressor::OwnSpeed.into()],
+                next: sentences::without_known(&joint.name, error, identified),
+                time: Vec::new(),
+            });
+        }
+    }
 }
 
 /// Asks for a training recording of joints that none moves.

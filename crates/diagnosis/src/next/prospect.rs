@@ -195,6 +195,7 @@ impl<'a> Prospect<'a> {
             qd: zeros(),
             qdd: zeros(),
             tau: zeros(),
+            known: Vec::new(),
             recording: 0,
             period,
             kernel,

@@ -7,11 +7,12 @@
 //! 2. [`Study::without_payload_of_a_link`]: no payload that the last joints do not feel, if a heavier link explains as much.
 //! 3. [`is_doubtful`]: a payload that is small beside the last link, or beside some wrong links, needs more evidence than another name.
 //! 4. [`is_of_no_mass`]: a body of a few grams is the last link.
-//! 5. [`without_moment::without_moment`]: a mass where the axes of the wrist meet may belong to a link before it.
-//! 6. [`possible::make_moments_possible`]: a payload that remains has moments of inertia that a body can have.
-//! 7. [`unmounted::unmounted`]: a change of the last link that is a body which is missing.
-//! 8. [`beside_few_links`]: the probability of a payload on an arm of few joints.
-//! 9. [`as_last_link`]: the last link is an alternative of a payload that is named beside wrong links.
+//! 5. [`compact::with_drives`]: a small body, where drives have the moments of a large one.
+//! 6. [`without_moment::without_moment`]: a mass where the axes of the wrist meet may belong to a link before it.
+//! 7. [`possible::make_moments_possible`]: a payload that remains has moments of inertia that a body can have.
+//! 8. [`unmounted::unmounted`]: a change of the last link that is a body which is missing.
+//! 9. [`beside_few_links`]: the probability of a payload on an arm of few joints.
+//! 10. [`as_last_link`]: the last link is an alternative of a payload that is named beside wrong links.
 
 use effects::arm::InertialParameters;
 
@@ -24,6 +25,7 @@ use crate::selection::naming::{Named, name};
 use crate::selection::rivals::Rival;
 use crate::thresholds::{BESIDE_FEW_LINKS, FEW_JOINTS, LEAST_MOUNTED, LEAST_PAYLOAD};
 
+pub mod compact;
 pub mod possible;
 pub mod unmounted;
 pub mod without_moment;

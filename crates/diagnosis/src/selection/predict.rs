@@ -44,7 +44,7 @@ fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn
         .filter(|&(&column, _)| is_dry(table.terms[column], joint) && counts(&table.terms[column]))
         .map(|(&column, &value)| (column, value))
         .collect();
-    if dry.is_empty() {
+    if dry.is_empty() && !data.has_known_dry_friction(joint) {
         return residual;
     }
     let (columns, values): (Vec<usize>, Vec<f64>) = dry.iter().copied().unzip();
@@ -53,6 +53,7 @@ fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn
     let (loads, times) = data.loads_and_times(joint, &rests);
     for ((&row, load), time) in rests.iter().zip(loads).zip(times) {
         let (mut cone, mut middle) = (0.0, 0.0);
+        let [subtracted, holds] = data.known_dry_at(joint, row);
         for &(column, value) in &dry {
             let term = table.terms[column];
             match term.law.cone {
@@ -61,8 +62,14 @@ fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn
                 Cone::No => {}
             }
         }
-        let free = residual[row] + as_moving[row] - middle;
-        residual[row] = free - free.clamp(-cone.abs(), cone.abs());
+        let free = residual[row] + as_moving[row] - middle + subtracted;
+        // Friction that is found beside a known one may be less than none.
+        let cone = if holds > 0.0 {
+            (holds + cone).max(0.0)
+        } else {
+            cone.abs()
+        };
+        residual[row] = free - free.clamp(-cone, cone);
     }
     residual
 }

@@ -5,7 +5,7 @@ use effects::{Acts, Term};
 use crate::regression::table::Table;
 use crate::search::study::Study;
 use crate::selection::judge::{Judged, Member};
-use crate::thresholds::{BLOCKS_A_SIDE, CHANGE_OVER_VARIATION};
+use crate::thresholds::{BLOCKS_A_SIDE, CHANGE_OVER_VARIATION, USUAL_VARIATION};
 
 /// A stretch of the recordings of one side.
 struct Block {
@@ -23,8 +23,39 @@ pub fn is_variation(study: &Study, judged: &Judged, member: &Member) -> bool {
         return false;
     };
     study.changes(member.candidate)
-        && over_variation(study, judged, member, &blocks(study, member, changed_at))
-            .is_none_or(|ratio| ratio < CHANGE_OVER_VARIATION)
+        && (is_usual(study, judged, member, changed_at)
+            || over_variation(study, judged, member, &blocks(study, member, changed_at))
+                .is_none_or(|ratio| ratio < CHANGE_OVER_VARIATION))
+}
+
+/// Whether a change of friction is within the usual difference between two recordings, where one side has only one: its stretches
+/// do not show how much the friction differs from one recording to the next, with the temperature of the drive.
+fn is_usual(study: &Study, judged: &Judged, member: &Member, changed_at: f64) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    let Some(joint) = candidate.joint.filter(|_| candidate.hypothesis.spec().is_friction) else {
+        return false;
+    };
+    let on_joint = |other: &&Member| {
+        let other = &study.candidates[other.candidate];
+        other.joint == Some(joint) && other.hypothesis.spec().is_friction
+    };
+    let friction: f64 = judged
+        .members
+        .iter()
+        .filter(on_joint)
+        .map(|other| other.shares[joint])
+        .sum();
+    recordings_of_a_side(study, changed_at) < 2 && member.shares[joint] < USUAL_VARIATION * friction
+}
+
+/// The number of training recordings of the side of a change that has fewer.
+fn recordings_of_a_side(study: &Study, changed_at: f64) -> usize {
+    let times = study.data.motions.row_times();
+    let fitted = study.table.rows.iter().zip(&study.data.fitted);
+    let starts = fitted.filter(|(rows, fitted)| **fitted && !rows.is_empty());
+    let after: Vec<bool> = starts.map(|(rows, _)| times[rows.start] >= changed_at).collect();
+    let count = |is_after: bool| after.iter().filter(|&&after| after == is_after).count();
+    count(false).min(count(true))
 }
 
 /// The stretches of the training recordings in the order of time: halves of the motion in each recording, or several of them, at most

@@ -152,3 +152,11 @@ pub const MOST_LAGS: usize = 2;
 /// The times by which dry friction may turn round late beside a lag of all torques (s): two, because it approaches its level slowly. Source:
 /// a UR10 simulated with another engine, whose friction turns round over 0.3 to 1 mrad; a lag of 7 ms was found in all three.
 pub const TURNS_LATE: [f64; 2] = [0.005, 0.04];
+/// The least part of the model's torque that is gravity's (standard deviations), for a joint to show whether its measured torque contains
+/// gravity.
+pub const LEAST_GRAVITY: f64 = 0.3;
+/// The gravity that measured torques show over the model's, below which they contain none. Source: five simulated recordings without gravity,
+/// where it is up to 0.05, and ten real robots with it.
+pub const NO_GRAVITY: f64 = 0.15;
+/// The ridge of that regression, over the mean square of each column.
+pub const GRAVITY_RIDGE: f64 = 1e-4;

@@ -26,6 +26,37 @@ struct State {
 /// The drive of [`TURN`], whose load changes its sign with the acceleration, follows the motion in a position loop, and moves its link
 /// through a gap of ± `halfgap` (rad).
 pub fn with_gap(arm: Arm, halfgap: f64) -> impl Fn(&mut Motion, &mut [f64]) {
+    with_ends(arm, halfgap, Ends::Sharp)
+}
+
+/// The ends of a gap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ends {
+    /// They become stiff at once.
+    Sharp,
+    /// They become stiff within this part of half the gap, and the link bounces between them for long.
+    Rounded(f64),
+}
+
+impl Ends {
+    /// The torque (N m) on the link at a twist (rad) with a rate of change (rad/s).
+    fn torque(self, halfgap: f64, twist: f64, rate: f64) -> f64 {
+        match self {
+            Self::Sharp => {
+                let stretched = twist - twist.clamp(-halfgap, halfgap);
+                STIFFNESS * stretched + if stretched == 0.0 { 0.0 } else { DAMPING * rate }
+            }
+            Self::Rounded(part) => {
+                let width = part * halfgap;
+                let soft = |depth: f64| (depth / width).max(0.0) + (-(depth / width).abs()).exp().ln_1p();
+                STIFFNESS * width * (soft(twist - halfgap) - soft(-twist - halfgap))
+            }
+        }
+    }
+}
+
+/// [`with_gap`] with other ends.
+pub fn with_ends(arm: Arm, halfgap: f64, ends: Ends) -> impl Fn(&mut Motion, &mut [f64]) {
     let state: RefCell<Option<State>> = RefCell::new(None);
     move |motion, tau| {
         let (wanted, speed) = (motion.q[TURN], motion.qd[TURN]);
@@ -49,9 +80,8 @@ pub fn with_gap(arm: Arm, halfgap: f64) -> impl Fn(&mut Motion, &mut [f64]) {
         let step = (motion.time - now.time) / f64::from(STEPS);
         for _ in 0..STEPS {
             let twist = now.rotor[0] - now.link[0];
-            let stretched = twist - twist.clamp(-halfgap, halfgap);
             let rate = now.rotor[1] - now.link[1];
-            let through = STIFFNESS * stretched + if stretched == 0.0 { 0.0 } else { DAMPING * rate };
+            let through = ends.torque(halfgap, twist, rate);
             let accelerations = [(torque - through) / ROTOR, (through - rest) / mass];
             for (side, acceleration) in [&mut now.rotor, &mut now.link].into_iter().zip(accelerations) {
                 side[1] += step * acceleration;

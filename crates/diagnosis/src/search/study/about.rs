@@ -210,6 +210,7 @@ mod tests {
             qd: signal(1.0),
             qdd: signal(2.0),
             tau: signal(3.0),
+            known: Vec::new(),
             kernel: Kernel::new(10.0, 0.01),
             stride: 1,
         };

@@ -1,0 +1,94 @@
+//! Torques that were recorded without gravity.
+
+use effects::{Scales, sign};
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use crate::data::motion::Motions;
+use crate::data::rigid::Rigid;
+use crate::data::statistics::{deviation, mean};
+use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, NO_GRAVITY};
+use crate::words::list;
+
+/// The joints that need torque against gravity, if the measured torques of none of them contain any: the controller reports them without
+/// what it adds against gravity. Gravity in another direction than the model's is gravity.
+pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vector3<f64>) -> Vec<usize> {
+    let joints = (0..motions.dof).filter(|&joint| scales.torque[joint] > 0.0);
+    let found: Vec<(usize, f64)> = joints
+        .filter_map(|joint| Some((joint, measured(motions, rigid, scales, gravity, joint)?)))
+        .collect();
+    let is_without = found.len() > 1 && found.iter().all(|(_, part)| *part < NO_GRAVITY);
+    found
+        .into_iter()
+        .filter(|_| is_without)
+        .map(|(joint, _)| joint)
+        .collect()
+}
+
+/// The note on the joints `names`.
+pub fn remark(names: &[&str]) -> String {
+    format!(
+        "{}: the measured torques contain no gravity, although these joints carry weight: the controller reports them without the torques that it adds against gravity, and they are not diagnosed. Record the whole torques, or add the gravity torques of the controller's model to the columns",
+        list(names)
+    )
+}
+
+/// The gravity that the torque of `joint` shows over the model's, beside masses, drive inertia, friction and a constant of any size. `None` if
+/// gravity is a small part of the model's torque, or if the joint hardly moves.
+fn measured(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vector3<f64>, joint: usize) -> Option<f64> {
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 8];
+    let (mut torque, mut weight, mut needed) = (Vec::new(), Vec::new(), Vec::new());
+    let chunks = motions.chunks.iter().zip(rigid);
+    for (chunk, rigid) in chunks.filter(|(chunk, _)| !motions.sources[chunk.recording].held_out) {
+        let moving: Vec<usize> = (0..chunk.rows())
+            .filter(|&row| chunk.qd[joint][chunk.tick_of(row)].abs() > scales.rest[joint])
+            .collect();
+        let filtered = |signal: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let values = chunk.filter(&(0..chunk.ticks()).map(signal).collect::<Vec<f64>>());
+            moving.iter().map(|&row| values[row]).collect()
+        };
+        let along = |axis: usize, tick: usize| rigid.gravity[joint][axis][tick];
+        let of_weight = |tick: usize| (0..3).map(|axis| gravity[axis] * along(axis, tick)).sum::<f64>();
+        let signals: [&dyn Fn(usize) -> f64; 8] = [
+            &|tick| along(0, tick),
+            &|tick| along(1, tick),
+            &|tick| along(2, tick),
+            &|tick| rigid.tau[joint][tick] - of_weight(tick),
+            &|tick| chunk.qdd[joint][tick],
+            &|tick| sign(chunk.qd[joint][tick]),
+            &|tick| chunk.qd[joint][tick],
+            &|_| 1.0,
+        ];
+        columns
+            .iter_mut()
+            .zip(signals)
+            .for_each(|(column, signal)| column.extend(filtered(signal)));
+        torque.extend(filtered(&|tick| chunk.tau[joint][tick]));
+        weight.extend(filtered(&of_weight));
+        needed.extend(filtered(&|tick| rigid.tau[joint][tick]));
+    }
+    let is_loaded = deviation(weight.iter()) >= LEAST_GRAVITY * deviation(needed.iter());
+    if torque.len() < LEAST_CHANNEL_ROWS || !is_loaded || deviation(weight.iter()) == 0.0 {
+        return None;
+    }
+    // Directions in which gravity has little torque are unknown: a ridge leaves them at zero.
+    let scale: Vec<f64> = columns
+        .iter()
+        .map(|column| 1.0 / power(column).sqrt().max(1e-12))
+        .collect();
+    let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / torque.len() as f64;
+    let mut gram = DMatrix::from_fn(8, 8, |i, k| scale[i] * scale[k] * inner(&columns[i], &columns[k]));
+    (0..8).for_each(|i| gram[(i, i)] += GRAVITY_RIDGE);
+    let right = DVector::from_fn(8, |i, _| scale[i] * inner(&columns[i], &torque));
+    let solution = gram.cholesky()?.solve(&right);
+    let of_gravity = |row: usize| {
+        (0..3)
+            .map(|axis| scale[axis] * solution[axis] * columns[axis][row])
+            .sum::<f64>()
+    };
+    let shown: Vec<f64> = (0..torque.len()).map(of_gravity).collect();
+    Some(deviation(shown.iter()) / deviation(weight.iter()))
+}
+
+fn power(signal: &[f64]) -> f64 {
+    mean(signal.iter().map(|value| value * value))
+}

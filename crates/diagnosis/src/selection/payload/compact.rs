@@ -1,0 +1,44 @@
+//! Payloads whose moments of inertia are those of the drives.
+
+use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS};
+use effects::drive::RotorInertia;
+
+use crate::regression::bodies::PER_LINK;
+use crate::search::problem::Selection;
+use crate::search::study::Study;
+
+/// `selected` with a small body in the place of its payload, and with inertias of drives, if that explains as much. Where each joint moves
+/// alone, the moments of a body and the inertias of the drives have the same torques, and a tool is small.
+pub fn with_drives(study: &Study, selected: Selection) -> Selection {
+    let first_term = |c: usize| study.table.terms[study.candidates[c].columns[0]];
+    let has_moments = |&c: &usize| {
+        let is_free = first_term(c).always().is(&PAYLOAD_PARAMETER);
+        study.is_payload(c) && study.candidates[c].columns.len() == PER_LINK && is_free
+    };
+    let mut payloads = selected.set.iter().copied().filter(has_moments);
+    let (Some(payload), None) = (payloads.next(), payloads.next()) else {
+        return selected;
+    };
+    let is_same = |&c: &usize| {
+        let first = first_term(c);
+        study.is_payload(c) && first.always().is(&PAYLOAD_WITHOUT_MOMENTS) && first.acts == first_term(payload).acts
+    };
+    let Some(small) = (0..study.candidates.len()).find(is_same) else {
+        return selected;
+    };
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let is_drive = |&c: &usize| study.candidates[c].hypothesis.is(&RotorInertia) && study.always_acts(c);
+    let drives: Vec<usize> = study.allowed().into_iter().filter(is_drive).collect();
+    let set: Vec<usize> = selected
+        .set
+        .iter()
+        .map(|&c| if c == payload { small } else { c })
+        .collect();
+    let next = problem.forward(problem.choose(set, &selected.fit.weights), &drives);
+    if next.score < selected.score && problem.is_possible(small, &next.fit) {
+        study.note("a small body and drives explain as much", &selected, &next);
+        return next;
+    }
+    selected
+}
