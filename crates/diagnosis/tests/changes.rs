@@ -268,3 +268,58 @@ fn pauses_of_recordings_from_before_are_before_the_change() {
     let mass = new_payload([1.0; 3], 100.0);
     assert!((mass.value / 1.2 - 1.0).abs() < 0.02, "{mass:?}");
 }
+
+/// Coulomb friction fell by half on a joint whose friction depends on the load: some friction remains, so that it is less, and not gone.
+#[test]
+fn friction_of_another_form_remains() {
+    let diagnosis = with(&|motion, tau| {
+        let load = tau[ELBOW].abs();
+        baseline_friction(motion, tau);
+        let level = if is_after(motion) { 0.5 } else { 1.3 };
+        tau[ELBOW] += (level + 0.25 * load) * motion.qd[ELBOW].signum();
+    });
+    let on_elbow: Vec<_> = changes(&diagnosis)
+        .into_iter()
+        .map(|(_, effect, joint, change)| (effect, joint, change))
+        .collect();
+    assert_eq!(
+        on_elbow,
+        [("coulomb_friction", Some("elbow"), Change::Reduced)],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let today = support::effects_on(&diagnosis, "elbow");
+    assert!(today.contains(&"load_dependent_friction"), "{today:?}");
+}
+
+/// One recording of each side: the drives' friction differs by 5 % between them, as it does from day to day.
+#[test]
+fn the_friction_of_another_day_is_no_change() {
+    for (part, is_named) in [(0.95, false), (0.6, true)] {
+        let machine = |motion: &mut Motion, tau: &mut [f64]| {
+            let mut friction = [0.0; 3];
+            baseline_friction(motion, &mut friction);
+            let today = if is_after(motion) { part } else { 1.0 };
+            tau.iter_mut()
+                .zip(friction)
+                .for_each(|(tau, friction)| *tau += today * friction);
+        };
+        let recordings: Vec<RegularRecording> = [1, 2, 3]
+            .map(|variant| regular(&support::recorded(&trio(), variant, 16.0, &machine)))
+            .into();
+        let input = |(number, recording)| Input {
+            name: ["a", "b", "c"][number],
+            recording,
+            held_out: number == 2,
+            before: number == 0,
+        };
+        let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
+        let diagnosis = diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed");
+        assert_eq!(
+            !changes(&diagnosis).is_empty(),
+            is_named,
+            "{part}: {:?}",
+            sentences(&diagnosis)
+        );
+    }
+}

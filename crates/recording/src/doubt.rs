@@ -48,7 +48,8 @@ pub fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> R
         column: channel.header.clone(),
         found,
         what: "not a finite number",
-        remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with",
+        remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with. If many cells are empty, because several topics were \
+                 exported into one table, export each joint's columns from one topic",
     }
 }
 

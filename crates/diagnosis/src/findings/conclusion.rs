@@ -101,8 +101,8 @@ impl Conclusion {
         let located = locate(data, table, &data.nominal, residual);
         let mut unexplained = unexplained(last, &fit, &transients, &located);
         let has_findings = !findings.is_empty();
-        poorly_predicted(last, &fit, has_findings, &mut unexplained);
         known_too_large(last, &fit, &options.known, &mut unexplained);
+        poorly_predicted(last, &fit, has_findings, &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();

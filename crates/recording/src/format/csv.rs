@@ -140,7 +140,8 @@ impl Lines {
     }
 
     fn check_width(&self, row: &ByteRecord) -> Result<(), RecordingError> {
-        if row.len() == self.width {
+        // Spreadsheets may write separators after the last cell.
+        if row.len() >= self.width && row.iter().skip(self.width).all(|cell| cell.trim_ascii().is_empty()) {
             return Ok(());
         }
         let remedy = if row.len() + 1 >= 2 * self.width {

@@ -73,6 +73,8 @@ fn a_bad_file_is_refused_with_its_place() {
     assert!(refusal("t,q_a,tau_a\n0,1,2\n").contains("one row"));
     assert!(refusal("t,q_a,tau_a\n0,1,2\n0,1,2\n").contains("r.csv:1: all 2 rows have the time 0 s"));
     assert!(refusal("t,q_a,tau_a\n0,1\n1,1,2\n2,1,2\n").contains("r.csv:2: the row has 2 cells, the header 3"));
+    // Separators after the last cell, as spreadsheets write them, are no cells.
+    assert!(!refusal("t,q_a,tau_a\n0,1,2,,\n1,1,2,\n.5,1,2\n").contains("cells"));
     assert!(refusal("t,q_a,tau_a,q_a\n").contains("two columns \"q_a\""));
     let gone = Recording::read(Path::new("/nowhere/r.csv"))
         .expect_err("it is not there")

@@ -36,8 +36,32 @@ pub fn no_table(start: &[u8]) -> Option<(u64, String)> {
     if text.trim_ascii().starts_with(b"<") {
         return said("this is XML (a URDF?), not CSV; give a recording here, and the robot's URDF with --robot");
     }
-    None
+    above_header(text).map(|reason| (1, reason))
 }
+
+/// What lines above the header are; `None` if there are none. They have no separators, and lines after them have several.
+fn above_header(text: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(text);
+    let mut lines = text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty());
+    let (first, _) = lines.next().filter(|(line, _)| !line.starts_with('#'))?;
+    if first.to_lowercase().starts_with("sep=") {
+        return Some(format!("\"{}\" is a line for spreadsheets; delete it", first.trim()));
+    }
+    let cells = |line: &str| [',', ';', '\t'].map(|separator| line.matches(separator).count() + 1);
+    if cells(first) != [1; 3] {
+        return None;
+    }
+    let is_header = |line: &str| cells(line).into_iter().any(|count| count >= LEAST_COLUMNS);
+    let (_, header) = lines.take(MOST_TITLE_LINES).find(|(line, _)| is_header(line))?;
+    let shown: String = first.trim().chars().take(40).collect();
+    Some(format!(
+        "\"{shown}\" is no header, and line {header} may be one; delete the lines above it"
+    ))
+}
+
+/// The least number of columns of a recording, and the largest number of lines of text above a header that are recognised.
+const LEAST_COLUMNS: usize = 3;
+const MOST_TITLE_LINES: usize = 10;
 
 /// What lines that begin with `#` above the table are.
 #[derive(Debug, PartialEq, Eq)]
@@ -182,5 +206,26 @@ impl<R: Read> Read for Squeezed<R> {
         out[..count].copy_from_slice(&self.buffer[self.given..self.given + count]);
         self.given += count;
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_above_the_header_are_named() {
+        let reason = |text: &str| no_table(text.as_bytes()).map(|(_, reason)| reason);
+        let table = "t,q_a,tau_a\n0,1,2\n1,1,2\n";
+        assert_eq!(reason(table), None);
+        assert_eq!(reason(&format!("# a comment\n{table}")), None);
+        assert_eq!(reason("t q_a tau_a\n0 1 2\n1 1 2\n"), None);
+        let sep = reason(&format!("sep=,\n{table}"));
+        assert_eq!(sep.as_deref(), Some("\"sep=,\" is a line for spreadsheets; delete it"));
+        let title = reason(&format!("Robot 7, no load\n\n{table}").replace(", ", " "));
+        assert_eq!(
+            title.as_deref(),
+            Some("\"Robot 7 no load\" is no header, and line 3 may be one; delete the lines above it")
+        );
     }
 }

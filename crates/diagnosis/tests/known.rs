@@ -1,0 +1,151 @@
+//! Known effects: what they hold at rest, what a torque constant multiplies, and what is less than known.
+
+mod support;
+
+use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
+use diagnosis::{Diagnosis, Verdict};
+use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::joint::Spring;
+use effects::{Effect, EffectKind};
+use support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, effects_on, named, sentences, trio};
+
+/// The friction of [`baseline_friction`], and a spring on the shoulder.
+fn known() -> Vec<Effect> {
+    let on = |joint: &str| {
+        let coulomb = Effect::of(&CoulombFriction).on(joint).with("level", 0.6);
+        let viscous = Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.4);
+        [coulomb, viscous]
+    };
+    let spring = Effect::of(&Spring)
+        .on("shoulder")
+        .with("stiffness", 8.0)
+        .with("rest", 0.2);
+    ["turn", "shoulder", "elbow"]
+        .into_iter()
+        .flat_map(on)
+        .chain([spring])
+        .collect()
+}
+
+fn with_spring(motion: &Motion, tau: &mut [f64]) {
+    baseline_friction(motion, tau);
+    tau[SHOULDER] += 8.0 * (motion.q[SHOULDER] - 0.2);
+}
+
+/// The shoulder rests for some seconds, and its dry friction holds a part of its weight. Friction that is known holds as much as
+/// friction that is found.
+#[test]
+fn known_friction_holds_a_joint_at_rest() {
+    let machine = |motion: &mut Motion, tau: &mut [f64]| {
+        if (4.0..7.0).contains(&motion.time) {
+            let still = support::motion(3, 4.0, 0).q[SHOULDER];
+            (motion.q[SHOULDER], motion.qd[SHOULDER], motion.qdd[SHOULDER]) = (still, 0.0, 0.0);
+            let arm = trio();
+            arm.inverse_dynamics(&mut Workspace::new(&arm), &motion.q, &motion.qd, &motion.qdd, tau);
+            let mut friction = [0.0; 3];
+            baseline_friction(motion, &mut friction);
+            (0..3)
+                .filter(|&joint| joint != SHOULDER)
+                .for_each(|joint| tau[joint] += friction[joint]);
+            tau[SHOULDER] += 8.0 * (still - 0.2) + 0.5;
+        } else {
+            with_spring(motion, tau);
+        }
+    };
+    let arm = trio();
+    let diagnosis = diagnosed(&arm, &arm, &machine, known());
+    let resting = diagnosis.report.fit["shoulder"].held_out_nrmse_resting;
+    assert!(resting.is_some_and(|error| error < 0.01), "{resting:?}");
+    let notes: Vec<&String> = diagnosis
+        .remarks
+        .iter()
+        .filter(|note| note.contains("a brake"))
+        .collect();
+    assert!(notes.is_empty(), "{notes:?}");
+}
+
+/// A torque constant that changed multiplies the torques of known effects as well: none of them returns as a new one.
+#[test]
+fn a_torque_scale_multiplies_known_effects() {
+    let arm = trio();
+    let machine = |motion: &mut Motion, tau: &mut [f64]| {
+        with_spring(motion, tau);
+        tau[SHOULDER] *= 1.2;
+    };
+    let diagnosis = diagnosed(&arm, &arm, &machine, known());
+    assert_eq!(
+        named(&diagnosis),
+        [("torque_scale", Some("shoulder"))],
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    assert_eq!(effects_on(&diagnosis, "shoulder"), ["torque_scale"]);
+    let factor = diagnosis.report.findings[0].parameters["factor"].value;
+    assert!((factor - 1.2).abs() < 0.01, "{factor}");
+}
+
+/// Friction that fell since it was known is no effect of the catalogue, and the recordings are not called explained.
+#[test]
+fn less_friction_than_known_is_unexplained() {
+    let arm = trio();
+    let machine = |motion: &mut Motion, tau: &mut [f64]| {
+        with_spring(motion, tau);
+        tau[ELBOW] -= 0.4 * motion.qd[ELBOW].signum();
+    };
+    let diagnosis = diagnosed(&arm, &arm, &machine, known());
+    assert_eq!(
+        diagnosis.report.verdict,
+        Verdict::Unexplained,
+        "{:?}",
+        sentences(&diagnosis)
+    );
+    let open: Vec<&str> = diagnosis.report.unexplained.iter().map(|open| &*open.joint).collect();
+    assert_eq!(open, ["elbow"]);
+    let next = &diagnosis.report.unexplained[0].next;
+    assert!(next.contains("without the known effects of elbow"), "{next}");
+}
+
+/// The robot's torques as its controller reports them: without those against gravity.
+fn without_gravity(robot: &Arm) -> Diagnosis {
+    let arm = robot.clone();
+    let machine = move |motion: &mut Motion, tau: &mut [f64]| {
+        let mut weight = vec![0.0; 3];
+        arm.gravity_torque(&mut Workspace::new(&arm), &motion.q, &mut weight);
+        baseline_friction(motion, tau);
+        tau.iter_mut().zip(weight).for_each(|(tau, weight)| *tau -= weight);
+    };
+    diagnosed(&trio(), robot, &machine, Vec::new())
+}
+
+/// Torques without gravity are no reason to doubt the masses of all links. The vertical axis, which gravity does not load, is diagnosed.
+#[test]
+fn torques_without_gravity_are_recognised() {
+    let payload = Inertia {
+        mass: 0.5,
+        com: Vector3::new(0.0, 0.0, 0.1),
+        tensor: Matrix3::identity() * 1e-3,
+    };
+    for robot in [trio(), trio().with_payload(&payload)] {
+        let diagnosis = without_gravity(&robot);
+        let note = diagnosis
+            .remarks
+            .iter()
+            .find(|note| note.contains("contain no gravity"));
+        assert!(
+            note.is_some_and(|note| note.starts_with("shoulder and elbow:")),
+            "{note:?}"
+        );
+        let loaded = ["shoulder", "elbow"].map(|joint| effects_on(&diagnosis, joint));
+        assert!(loaded.iter().all(Vec::is_empty), "{:?}", sentences(&diagnosis));
+        assert!(effects_on(&diagnosis, "turn").contains(&CoulombFriction.spec().name));
+    }
+    // A base that was mounted on a wall has gravity in another direction.
+    let wall = trio().with_gravity(Vector3::new(9.81, 0.0, 0.0));
+    let diagnosis = diagnosed(
+        &trio(),
+        &wall,
+        &|motion, tau| baseline_friction(motion, tau),
+        Vec::new(),
+    );
+    assert!(!diagnosis.remarks.iter().any(|note| note.contains("contain no gravity")));
+}
