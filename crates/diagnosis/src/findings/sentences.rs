@@ -10,7 +10,7 @@ use crate::data::Data;
 use crate::report::{Change, Dependence, Finding, JointFit, Parameter};
 use crate::search::study::moved;
 use crate::selection::naming::may_be_nothing;
-use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS};
+use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS, SURE_CHANGE};
 use crate::words::list;
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
@@ -165,9 +165,6 @@ pub fn placeholders(arm: &Arm, least: &[f64]) -> Option<String> {
         )
     })
 }
-
-/// The probability below which a change is stated with it. Source: choice.
-const SURE_CHANGE: f64 = 0.9;
 
 /// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
 /// phrase, with all of its places in this `order` of the joints.

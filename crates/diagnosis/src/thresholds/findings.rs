@@ -116,13 +116,17 @@ pub const SWINGS: f64 = 0.1;
 /// The ratio to the noise that a residual exceeds where the ends of a gap are not those of the model. Source: `prove`, seven seeds; the
 /// residuals of 27 of 29 named gaps are below 3.6 times the noise, with sizes within 20 %, the two others at 6.5.
 pub const OTHER_ENDS_ABOVE_NOISE: f64 = 4.0;
-/// The size that such a gap may have over the size that is found, at least and at most. Source: simulated gaps of 3 to 10 mrad whose ends
-/// become stiff within 10 to 25 % of the gap, which were named with 0.19 to 0.74 of their size; in `prove`, 1.27 of it.
+/// The size that such a gap may have over the size that is found, at least. Source: `prove`, where a gap in which the link bounces was found
+/// with 1.27 times its size.
 pub const LEAST_OF_SEEN_GAP: f64 = 0.6;
+/// The size that such a gap may have over the size that is found, at most. Source: simulated gaps of 3 to 10 mrad whose ends become stiff
+/// within 10 to 25 % of the gap, which were named with 0.19 to 0.74 of their size.
 pub const LARGEST_OF_SEEN_GAP: f64 = 6.0;
 /// The part of the error of a joint with known effects that full identification leaves at most where these effects are too large. Source: an
 /// arm whose Coulomb friction had fallen by half, where it leaves 0.12; on its other joints 0.7 and more.
 pub const WITHOUT_KNOWN: f64 = 0.5;
+/// The probability below which a change since the recordings from before is stated with it. Source: choice.
+pub const SURE_CHANGE: f64 = 0.9;
 /// The least time in motion that a diagnosis needs on some joint (s). Source: first diagnosis.
 pub const LEAST_MOTION: f64 = 4.0;
 /// A recording has another load than the others if this load explains this part of its residual, at rest, too. Source: ten real
