@@ -1,7 +1,7 @@
 //! Phase 1, data: recordings with one common filter, the rigid model along them, scales and noise.
 
 use arm::Arm;
-use effects::Scales;
+use effects::{Effect, Scales};
 use rayon::prelude::*;
 
 pub use recording::statistics;
@@ -27,6 +27,8 @@ pub mod used;
 pub struct Data {
     /// The nominal model: the URDF's, with known effects.
     pub arm: Arm,
+    /// The effects that the nominal model has beside the URDF.
+    pub known: Vec<Effect>,
     /// The filtered recordings.
     pub motions: Motions,
     /// The model along them, one per chunk.
@@ -137,6 +139,7 @@ impl Data {
             floor: noise.iter().zip(&scales.torque).map(floor).collect(),
             noise,
             arm: known.arm,
+            known: options.known.clone(),
             motions,
             rigid,
             scales,

@@ -6,17 +6,18 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{deviation, mean};
-use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, NO_GRAVITY};
+use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, LEAST_INERTIA, NO_GRAVITY};
 use crate::words::list;
 
 /// The joints that need torque against gravity, if the measured torques of none of them contain any: the controller reports them without
-/// what it adds against gravity. Gravity in another direction than the model's is gravity.
+/// what it adds against gravity, or counterweights carry the weight. Gravity in another direction than the model's is gravity.
 pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vector3<f64>) -> Vec<usize> {
     let joints = (0..motions.dof).filter(|&joint| scales.torque[joint] > 0.0);
-    let found: Vec<(usize, f64)> = joints
+    let found: Vec<(usize, Shown)> = joints
         .filter_map(|joint| Some((joint, measured(motions, rigid, scales, gravity, joint)?)))
         .collect();
-    let is_without = found.len() > 1 && found.iter().all(|(_, part)| *part < NO_GRAVITY);
+    let lacks = |shown: &Shown| shown.gravity < NO_GRAVITY && shown.motion > LEAST_INERTIA;
+    let is_without = found.len() > 1 && found.iter().all(|(_, shown)| lacks(shown));
     found
         .into_iter()
         .filter(|_| is_without)
@@ -27,14 +28,26 @@ pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Ve
 /// The note on the joints `names`.
 pub fn remark(names: &[&str]) -> String {
     format!(
-        "{}: the measured torques contain no gravity, although these joints carry weight: the controller reports them without the torques that it adds against gravity, and they are not diagnosed. Record the whole torques, or add the gravity torques of the controller's model to the columns",
+        "{}: the measured torques contain no gravity, although these joints carry weight: they are not diagnosed. Either the controller reports them without the torques that it adds against gravity: record the whole torques, or add the gravity torques of the controller's model to the columns. Or counterweights or springs carry the weight: describe them with --known",
         list(names)
     )
 }
 
-/// The gravity that the torque of `joint` shows over the model's, beside masses, drive inertia, friction and a constant of any size. `None` if
+/// What a measured torque shows of gravity, and of inertia with that of the drive, over the model's.
+struct Shown {
+    gravity: f64,
+    motion: f64,
+}
+
+/// What the torque of `joint` shows, beside friction and a constant of any size. `None` if
 /// gravity is a small part of the model's torque, or if the joint hardly moves.
-fn measured(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vector3<f64>, joint: usize) -> Option<f64> {
+fn measured(
+    motions: &Motions,
+    rigid: &[Rigid],
+    scales: &Scales,
+    gravity: &Vector3<f64>,
+    joint: usize,
+) -> Option<Shown> {
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 8];
     let (mut torque, mut weight, mut needed) = (Vec::new(), Vec::new(), Vec::new());
     let chunks = motions.chunks.iter().zip(rigid);
@@ -80,13 +93,19 @@ fn measured(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vecto
     (0..8).for_each(|i| gram[(i, i)] += GRAVITY_RIDGE);
     let right = DVector::from_fn(8, |i, _| scale[i] * inner(&columns[i], &torque));
     let solution = gram.cholesky()?.solve(&right);
-    let of_gravity = |row: usize| {
-        (0..3)
-            .map(|axis| scale[axis] * solution[axis] * columns[axis][row])
-            .sum::<f64>()
+    let shown = |first: usize, last: usize| -> f64 {
+        let at = |row: usize| {
+            (first..last)
+                .map(|k| scale[k] * solution[k] * columns[k][row])
+                .sum::<f64>()
+        };
+        deviation((0..torque.len()).map(at).collect::<Vec<f64>>().iter())
     };
-    let shown: Vec<f64> = (0..torque.len()).map(of_gravity).collect();
-    Some(deviation(shown.iter()) / deviation(weight.iter()))
+    let part = |of: f64, model: f64| if model > 0.0 { of / model } else { 0.0 };
+    Some(Shown {
+        gravity: part(shown(0, 3), deviation(weight.iter())),
+        motion: part(shown(3, 5), deviation(columns[3].iter())),
+    })
 }
 
 fn power(signal: &[f64]) -> f64 {

@@ -169,21 +169,27 @@ pub fn placeholders(arm: &Arm, least: &[f64]) -> Option<String> {
 /// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
 /// phrase, with all of its places in this `order` of the joints.
 pub fn changes<'a>(findings: impl Iterator<Item = &'a Finding>, order: impl Fn(&str) -> Option<usize>) -> Vec<String> {
-    let mut phrases: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut phrases: Vec<(String, Vec<&str>, f64)> = Vec::new();
     for finding in findings {
-        let mut what = described(finding, &plain);
-        if let Some(probability) = finding.probability.filter(|&probability| probability < SURE_CHANGE) {
-            what += &format!(" (probability {probability:.2})");
-        }
+        let what = described(finding, &plain);
         let place = finding.joint.as_deref().unwrap_or("the whole arm");
-        match phrases.iter_mut().find(|(known, _)| *known == what) {
-            Some((_, places)) => places.push(place),
-            None => phrases.push((what, vec![place])),
+        let probability = finding.probability.unwrap_or(1.0);
+        match phrases.iter_mut().find(|(known, ..)| *known == what) {
+            Some((_, places, least)) => {
+                places.push(place);
+                *least = least.min(probability);
+            }
+            None => phrases.push((what, vec![place], probability)),
         }
     }
-    let phrase = |(what, mut places): (String, Vec<&str>)| {
+    let phrase = |(what, mut places, least): (String, Vec<&str>, f64)| {
         places.sort_by_key(|place| order(place));
-        format!("{}: {what}", list(&places))
+        let places = list(&places);
+        if least < SURE_CHANGE {
+            format!("{places}: {what} (probability {least:.2})")
+        } else {
+            format!("{places}: {what}")
+        }
     };
     phrases.into_iter().map(phrase).collect()
 }
@@ -298,14 +304,14 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
 /// The experiment for a residual that changes too quickly for the recordings, as where a link swings in a gap.
 pub fn look_behind_the_drive(joint: &str) -> String {
     format!(
-        "the residual of {joint} changes faster than these recordings follow, as where a link swings in a gap or on a soft gear: record a second encoder on the link side, or turn {joint} back and forth slowly at a constant load"
+        "the residual of {joint} changes faster than the filtered recordings show: the link may swing in a gap or on a soft gear: record a second encoder on the link side, or move {joint} back and forth slowly at a constant load"
     )
 }
 
-/// The advice for a joint of which full identification explains more than the model with its known effects does.
+/// The advice for a joint of which friction and drive inertia of any sign, in addition to the known effects, explain more than the catalogue.
 pub fn without_known(joint: &str, error: f64, identified: f64) -> String {
     format!(
-        "the known effects of {joint} do not fit these recordings: full identification without them leaves an error of {identified:.2}, and the model with them {error:.2}; diagnose these recordings without the known effects of {joint}, and compare the sizes"
+        "the known effects of {joint} may be larger than in these recordings: friction and drive inertia of any sign in addition to them leave an error of {identified:.2}, effects of the catalogue {error:.2}; diagnose these recordings without the known effects of {joint}, and compare the sizes"
     )
 }
 

@@ -118,8 +118,8 @@ pub fn poorly_predicted(
     }
 }
 
-/// Adds the joints with effects that are `known`, of which full identification, without knowing any, explains clearly more. A known effect
-/// that is larger than that of the recordings has no other name.
+/// Adds the joints with effects that are `known`, of which full identification in addition to them explains clearly more: its friction may have
+/// any sign. A known friction that is larger than that of the recordings has no other name.
 pub fn known_too_large(
     last: &FinalFit,
     fit: &BTreeMap<String, JointFit>,
@@ -254,6 +254,8 @@ pub fn not_enough(last: &FinalFit) -> Vec<String> {
         reasons.push(format!(
             "the training recordings are {all:.1} s long without the filter's ends; a diagnosis needs at least {LEAST_MOTION:.0} s of motion and several reversals of each joint"
         ));
+    } else if data.scales.torque.iter().all(|&torque| torque <= 0.0) {
+        reasons.push("no joint has a torque that can be diagnosed; the notes say why".to_owned());
     } else if products.count.iter().all(|&count| count == 0.0) {
         reasons.push(format!("no joint moves in the training recordings{hidden}"));
     } else if longest < LEAST_MOTION {

@@ -1,13 +1,13 @@
 //! Payloads and the last link: two names for the same ten columns.
 //!
-//! Any change of the last link's inertial parameters may be a body on the tool. The search and the final fit take these steps in this
-//! order:
+//! Any change of the last link's inertial parameters may be a body on the tool. The search takes the first three of these steps, the final fit
+//! the others, in this order:
 //!
 //! 1. [`Study::with_payload_for_last_link`]: a payload in the place of a last link that differs more than the others.
 //! 2. [`Study::without_payload_of_a_link`]: no payload that the last joints do not feel, if a heavier link explains as much.
-//! 3. [`is_doubtful`]: a payload that is small beside the last link, or beside some wrong links, needs more evidence than another name.
-//! 4. [`is_of_no_mass`]: a body of a few grams is the last link.
-//! 5. [`compact::with_drives`]: a small body, where drives have the moments of a large one.
+//! 3. [`compact::with_drives`]: a small body, where drives have the moments of a large one.
+//! 4. [`is_doubtful`]: a payload that is small beside the last link, or beside some wrong links, needs more evidence than another name.
+//! 5. [`is_of_no_mass`]: a body of a few grams is the last link.
 //! 6. [`without_moment::without_moment`]: a mass where the axes of the wrist meet may belong to a link before it.
 //! 7. [`possible::make_moments_possible`]: a payload that remains has moments of inertia that a body can have.
 //! 8. [`unmounted::unmounted`]: a change of the last link that is a body which is missing.

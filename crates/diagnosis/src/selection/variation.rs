@@ -2,6 +2,7 @@
 
 use effects::{Acts, Term};
 
+use crate::data::statistics::rms;
 use crate::regression::table::Table;
 use crate::search::study::Study;
 use crate::selection::judge::{Judged, Member};
@@ -28,24 +29,45 @@ pub fn is_variation(study: &Study, judged: &Judged, member: &Member) -> bool {
                 .is_none_or(|ratio| ratio < CHANGE_OVER_VARIATION))
 }
 
-/// Whether a change of friction is within the usual difference between two recordings, where one side has only one: its stretches
-/// do not show how much the friction differs from one recording to the next, with the temperature of the drive.
+/// Whether the changes of a joint's friction, each and together, are within the usual difference between two recordings, where one side has only
+/// one: its stretches do not show how much the friction differs from one recording to the next, with the temperature of the drive.
 fn is_usual(study: &Study, judged: &Judged, member: &Member, changed_at: f64) -> bool {
     let candidate = &study.candidates[member.candidate];
     let Some(joint) = candidate.joint.filter(|_| candidate.hypothesis.spec().is_friction) else {
         return false;
     };
-    let on_joint = |other: &&Member| {
-        let other = &study.candidates[other.candidate];
-        other.joint == Some(joint) && other.hypothesis.spec().is_friction
+    let times = study.data.motions.row_times();
+    let rows = study.table.moving_rows(joint, &study.data.fitted);
+    let after = rows.iter().filter(|&&row| times[row] >= changed_at).count() as f64 / rows.len().max(1) as f64;
+    // The sense of a change, and the part of the rows on which the effect acts.
+    let acting = |member: &Member| match Acts::of(&study.terms(member.candidate)) {
+        Acts::Always => (1.0, 1.0),
+        Acts::Since(_) => (1.0, after),
+        Acts::Until(_) => (-1.0, 1.0 - after),
     };
-    let friction: f64 = judged
-        .members
-        .iter()
-        .filter(on_joint)
-        .map(|other| other.shares[joint])
-        .sum();
-    recordings_of_a_side(study, changed_at) < 2 && member.shares[joint] < USUAL_VARIATION * friction
+    let (mut sum, mut largest) = (0.0_f64, 0.0_f64);
+    let mut constant = study.data.share(joint, known_friction(study, joint, &rows));
+    for other in &judged.members {
+        let this = &study.candidates[other.candidate];
+        if this.joint != Some(joint) || !this.hypothesis.spec().is_friction {
+            continue;
+        }
+        let (sense, part) = acting(other);
+        // Over the rows on which it acts.
+        let size = other.shares[joint] / part.sqrt().max(1e-9);
+        if study.changes(other.candidate) {
+            sum += sense * size;
+            largest = largest.max(size);
+        } else {
+            constant += size;
+        }
+    }
+    recordings_of_a_side(study, changed_at) < 2 && sum.abs().max(largest) < USUAL_VARIATION * constant
+}
+
+/// The root mean square of the known dry friction of a joint (N m or N).
+fn known_friction(study: &Study, joint: usize, rows: &[usize]) -> f64 {
+    rms(rows.iter().map(|&row| study.data.known_dry_at(joint, row)[0])).unwrap_or(0.0)
 }
 
 /// The number of training recordings of the side of a change that has fewer.

@@ -113,6 +113,9 @@ pub const SWINGS_ABOVE_NOISE: f64 = 6.0;
 /// The autocorrelation over [`RESIDUAL_LAG`](super::RESIDUAL_LAG) below which a residual has lost its memory. Source: as for
 /// [`SWINGING`], where it is between -0.17 and -0.03.
 pub const SWINGS: f64 = 0.1;
+/// The error (NRMSE) that a joint has at least where the ends of a gap are not those of the model. Source: as for
+/// [`OTHER_ENDS_ABOVE_NOISE`], and simulated gaps with rounded ends, which leave 0.046 and more.
+pub const OTHER_ENDS: f64 = 0.03;
 /// The ratio to the noise that a residual exceeds where the ends of a gap are not those of the model. Source: `prove`, seven seeds; the
 /// residuals of 27 of 29 named gaps are below 3.6 times the noise, with sizes within 20 %, the two others at 6.5.
 pub const OTHER_ENDS_ABOVE_NOISE: f64 = 4.0;

@@ -51,7 +51,10 @@ fn above_header(text: &[u8]) -> Option<String> {
     if cells(first) != [1; 3] {
         return None;
     }
-    let is_header = |line: &str| cells(line).into_iter().any(|count| count >= LEAST_COLUMNS);
+    // Numbers with decimal commas are no header.
+    let is_name = |cell: &&str| cell.contains(|letter: char| letter.is_alphabetic());
+    let names = |line: &str| [',', ';', '\t'].map(|separator| line.split(separator).filter(is_name).count());
+    let is_header = |line: &str| names(line).into_iter().any(|count| count >= LEAST_COLUMNS);
     let (_, header) = lines.take(MOST_TITLE_LINES).find(|(line, _)| is_header(line))?;
     let shown: String = first.trim().chars().take(40).collect();
     Some(format!(
@@ -220,6 +223,7 @@ mod tests {
         assert_eq!(reason(table), None);
         assert_eq!(reason(&format!("# a comment\n{table}")), None);
         assert_eq!(reason("t q_a tau_a\n0 1 2\n1 1 2\n"), None);
+        assert_eq!(reason("t q_a tau_a\n0,5 1,5 2,5\n1,5 1,5 2,5\n"), None);
         let sep = reason(&format!("sep=,\n{table}"));
         assert_eq!(sep.as_deref(), Some("\"sep=,\" is a line for spreadsheets; delete it"));
         let title = reason(&format!("Robot 7, no load\n\n{table}").replace(", ", " "));

@@ -30,6 +30,10 @@ pub fn with_drives(study: &Study, selected: Selection) -> Selection {
     let problem = study.problem(&products);
     let is_drive = |&c: &usize| study.candidates[c].hypothesis.is(&RotorInertia) && study.always_acts(c);
     let drives: Vec<usize> = study.allowed().into_iter().filter(is_drive).collect();
+    // Where no drive has an inertia so far, the moments may be those of a large body.
+    if !selected.set.iter().any(is_drive) {
+        return selected;
+    }
     let set: Vec<usize> = selected
         .set
         .iter()
