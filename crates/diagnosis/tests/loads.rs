@@ -152,33 +152,3 @@ fn a_push_on_a_joint_at_rest_is_noted() {
     };
     assert!(note.starts_with("b: elbow rests between 1006."), "{note}");
 }
-
-/// Each joint moves alone, so that the moments of a body and the inertias of the drives have the same torques: the body is a small one.
-#[test]
-fn moments_of_a_load_are_not_those_of_the_drives() {
-    let robot = with_load(&trio(), 0.7).with_rotor_inertias(&[0.15, 0.4, 0.1]);
-    let recordings: Vec<RegularRecording> = (0..4)
-        .map(|variant| {
-            let of_robot = |motion: &mut Motion, tau: &mut [f64]| {
-                let still = support::motion(3, 0.0, 0).q;
-                let moves = (motion.time / 5.4) as usize;
-                for joint in (0..3).filter(|&joint| joint != moves) {
-                    (motion.q[joint], motion.qd[joint], motion.qdd[joint]) = (still[joint], 0.0, 0.0);
-                }
-                robot.inverse_dynamics(&mut Workspace::new(&robot), &motion.q, &motion.qd, &motion.qdd, tau);
-                baseline_friction(motion, tau);
-            };
-            regular(&recorded(&robot, variant, 16.0, &of_robot))
-        })
-        .collect();
-    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
-    for (joint, inertia) in [("turn", 0.15), ("shoulder", 0.4), ("elbow", 0.1)] {
-        let is_it = |finding: &&diagnosis::Finding| {
-            finding.effect == "rotor_inertia" && finding.joint.as_deref() == Some(joint)
-        };
-        let found = diagnosis.report.findings.iter().find(is_it);
-        let found = found.unwrap_or_else(|| panic!("{joint}: {:?}", sentences(&diagnosis)));
-        let found = &found.parameters["inertia"];
-        assert!((found.value / inertia - 1.0).abs() < 0.1, "{joint}: {found:?}");
-    }
-}

@@ -1,13 +1,15 @@
 //! Payloads whose moments of inertia are those of the drives.
 
-use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS};
+use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, body};
 use effects::drive::RotorInertia;
 
 use crate::regression::bodies::PER_LINK;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
+use crate::thresholds::LARGEST_BODY;
 
-/// `selected` with a small body in the place of its payload, and with inertias of drives, if that explains as much. Where each joint moves
+/// `selected` with a small body in the place of its payload, and with inertias of drives, if that explains as much, and if
+/// some drives have an inertia already or no tool has such moments. Where each joint moves
 /// alone, the moments of a body and the inertias of the drives have the same torques, and a tool is small.
 pub fn with_drives(study: &Study, selected: Selection) -> Selection {
     let first_term = |c: usize| study.table.terms[study.candidates[c].columns[0]];
@@ -30,8 +32,11 @@ pub fn with_drives(study: &Study, selected: Selection) -> Selection {
     let problem = study.problem(&products);
     let is_drive = |&c: &usize| study.candidates[c].hypothesis.is(&RotorInertia) && study.always_acts(c);
     let drives: Vec<usize> = study.allowed().into_iter().filter(is_drive).collect();
-    // Where no drive has an inertia so far, the moments may be those of a large body.
-    if !selected.set.iter().any(is_drive) {
+    // Where no drive has an inertia so far, the moments may be those of a long body, but not of any.
+    let values: [f64; PER_LINK] =
+        std::array::from_fn(|k| selected.fit.coefficient(study.candidates[payload].columns[k]));
+    let of_gyration = (0.5 * body(&values).tensor.trace() / values[0]).max(0.0).sqrt();
+    if !selected.set.iter().any(is_drive) && of_gyration < LARGEST_BODY {
         return selected;
     }
     let set: Vec<usize> = selected
