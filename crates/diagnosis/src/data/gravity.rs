@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
-use crate::data::statistics::{deviation, mean};
+use crate::data::statistics::{deviation, mean_square};
 use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, LEAST_INERTIA, NO_GRAVITY};
 use crate::words::list;
 
@@ -86,7 +86,7 @@ fn measured(
     // Directions in which gravity has little torque are unknown: a ridge leaves them at zero.
     let scale: Vec<f64> = columns
         .iter()
-        .map(|column| 1.0 / power(column).sqrt().max(1e-12))
+        .map(|column| 1.0 / mean_square(column.iter().copied()).sqrt().max(1e-12))
         .collect();
     let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / torque.len() as f64;
     let mut gram = DMatrix::from_fn(8, 8, |i, k| scale[i] * scale[k] * inner(&columns[i], &columns[k]));
@@ -106,8 +106,4 @@ fn measured(
         gravity: part(shown(0, 3), deviation(weight.iter())),
         motion: part(shown(3, 5), deviation(columns[3].iter())),
     })
-}
-
-fn power(signal: &[f64]) -> f64 {
-    mean(signal.iter().map(|value| value * value))
 }

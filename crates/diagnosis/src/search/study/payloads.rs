@@ -1,8 +1,9 @@
 //! Decides between payloads and bodies of links, which explain the same torque.
 
-use effects::arm::Payload;
+use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, Payload};
 
 use super::Study;
+use crate::regression::bodies::PER_LINK;
 use crate::search::problem::Selection;
 use crate::thresholds::{FELT, PAYLOAD_JOINTS, PER_LINK_APART};
 
@@ -10,6 +11,23 @@ impl Study {
     /// Whether a candidate is a payload, with or without moments of inertia.
     pub fn is_payload(&self, candidate: usize) -> bool {
         self.candidates[candidate].hypothesis.is(&Payload)
+    }
+
+    /// Whether a candidate is a payload with moments of inertia of its own.
+    pub fn has_free_moments(&self, candidate: usize) -> bool {
+        let columns = &self.candidates[candidate].columns;
+        self.is_payload(candidate)
+            && columns.len() == PER_LINK
+            && self.table.terms[columns[0]].always().is(&PAYLOAD_PARAMETER)
+    }
+
+    /// The payload without moments that acts when `payload` does.
+    pub fn without_moments(&self, payload: usize) -> Option<usize> {
+        let first = |c: usize| &self.table.terms[self.candidates[c].columns[0]];
+        (0..self.candidates.len()).find(|&c| {
+            let is_without = first(c).always().is(&PAYLOAD_WITHOUT_MOMENTS);
+            self.is_payload(c) && is_without && first(c).acts == first(payload).acts
+        })
     }
 
     /// The mass of the URDF's last link (kg).

@@ -1,6 +1,6 @@
 //! Payloads whose moments of inertia are those of the drives.
 
-use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, body};
+use effects::arm::body;
 use effects::drive::RotorInertia;
 
 use crate::regression::bodies::PER_LINK;
@@ -8,24 +8,14 @@ use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::thresholds::LARGEST_BODY;
 
-/// `selected` with a small body in the place of its payload, and with inertias of drives, if that explains as much, and if
-/// some drives have an inertia already or no tool has such moments. Where each joint moves
-/// alone, the moments of a body and the inertias of the drives have the same torques, and a tool is small.
+/// `selected` with a small body in the place of its payload, and with inertias of drives, if that explains as much, and if some
+/// drives have an inertia already or no tool has such moments. Where each joint moves alone, the moments of a body and the inertias of the drives have the same torques, and a tool is small.
 pub fn with_drives(study: &Study, selected: Selection) -> Selection {
-    let first_term = |c: usize| study.table.terms[study.candidates[c].columns[0]];
-    let has_moments = |&c: &usize| {
-        let is_free = first_term(c).always().is(&PAYLOAD_PARAMETER);
-        study.is_payload(c) && study.candidates[c].columns.len() == PER_LINK && is_free
-    };
-    let mut payloads = selected.set.iter().copied().filter(has_moments);
+    let mut payloads = selected.set.iter().copied().filter(|&c| study.has_free_moments(c));
     let (Some(payload), None) = (payloads.next(), payloads.next()) else {
         return selected;
     };
-    let is_same = |&c: &usize| {
-        let first = first_term(c);
-        study.is_payload(c) && first.always().is(&PAYLOAD_WITHOUT_MOMENTS) && first.acts == first_term(payload).acts
-    };
-    let Some(small) = (0..study.candidates.len()).find(is_same) else {
+    let Some(small) = study.without_moments(payload) else {
         return selected;
     };
     let products = study.training_products();

@@ -1,6 +1,6 @@
 //! Payloads whose moments of inertia no body has, because the recordings do not determine all of them.
 
-use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, body, exists};
+use effects::arm::{body, exists};
 use nalgebra::Matrix6;
 
 use crate::regression::bodies::{PER_LINK, WITHOUT_MOMENTS, nearest_tensor};
@@ -15,24 +15,16 @@ pub fn make_moments_possible(study: &mut Study, judged: &mut Judged) -> bool {
     let (Some(payload), None) = (payloads.next(), payloads.next()) else {
         return false;
     };
-    let columns = study.candidates[payload].columns.clone();
-    let is_free = study.table.terms[columns[0]].always().is(&PAYLOAD_PARAMETER);
-    if columns.len() != PER_LINK || !is_free {
+    if !study.has_free_moments(payload) {
         return false;
     }
+    let columns = study.candidates[payload].columns.clone();
     let values: [f64; PER_LINK] = std::array::from_fn(|k| judged.named.fit.coefficient(columns[k]));
     let (mass, tensor) = (values[0], body(&values).tensor);
     if exists(mass, &tensor) {
         return false;
     }
-    let is_same = |&c: &usize| {
-        let other = &study.candidates[c];
-        let first = &study.table.terms[other.columns[0]];
-        study.is_payload(c)
-            && first.always().is(&PAYLOAD_WITHOUT_MOMENTS)
-            && first.acts == study.table.terms[columns[0]].acts
-    };
-    let Some(without) = (0..study.candidates.len()).find(is_same) else {
+    let Some(without) = study.without_moments(payload) else {
         return false;
     };
     let products = study.training_products();
