@@ -9,6 +9,7 @@ pub use recording::statistics;
 use crate::data::motion::{Chunk, Motions};
 use crate::error::DiagnosisError;
 use crate::options::Options;
+use crate::report::NotDiagnosed;
 use crate::thresholds::{RESTING, RESTING_REACH, ROUNDING};
 
 pub mod channels;
@@ -47,6 +48,8 @@ pub struct Data {
     pub seconds: Vec<f64>,
     /// Whether a recording is fitted.
     pub fitted: Vec<bool>,
+    /// The joints whose torque channels hold no usable torque; their torque in `scales` is 0.
+    pub not_diagnosed: Vec<NotDiagnosed>,
     /// Known dry friction on all rows, one list per joint: what was subtracted from the torques beyond the torque that is the same in
     /// both directions, and the largest torque that it holds at rest (N m or N).
     known_dry: Option<[Vec<Vec<f64>>; 2]>,
@@ -109,9 +112,14 @@ impl Data {
         exchange(&mut motions);
         let without = channels::without_torque(inputs, &motions, &rigid, &scales, by_model);
         exchange(&mut motions);
+        let names = |joints: &[usize]| joints.iter().map(|&joint| arm.joints()[joint].name.clone()).collect();
+        let mut not_diagnosed: Vec<NotDiagnosed> = Vec::new();
         for (joint, why) in without {
             scales.torque[joint] = 0.0;
-            motions.remarks.push(why.remark(&arm.joints()[joint].name));
+            not_diagnosed.push(NotDiagnosed {
+                joints: names(&[joint]),
+                because: why.clause(),
+            });
         }
         let weightless = if by_model {
             gravity::without(&motions, &rigid, &scales, arm.gravity())
@@ -119,9 +127,11 @@ impl Data {
             Vec::new()
         };
         if !weightless.is_empty() {
-            let names: Vec<&str> = weightless.iter().map(|&joint| &*arm.joints()[joint].name).collect();
-            motions.remarks.push(gravity::remark(&names));
             weightless.iter().for_each(|&joint| scales.torque[joint] = 0.0);
+            not_diagnosed.push(NotDiagnosed {
+                joints: names(&weightless),
+                because: gravity::CLAUSE.to_owned(),
+            });
         }
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
         let noise = measure::noise(&motions, &rigid, &fitted);
@@ -145,6 +155,7 @@ impl Data {
             scales,
             measured,
             fitted,
+            not_diagnosed,
             known_dry,
         };
         data.hold_at_rest();

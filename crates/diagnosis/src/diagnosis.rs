@@ -45,6 +45,7 @@ impl Diagnosis {
             warnings: Vec::new(),
             findings: Vec::new(),
             unexplained: Vec::new(),
+            not_diagnosed: Vec::new(),
             not_observable: Vec::new(),
             not_enough_data: Vec::new(),
             located: Vec::new(),

@@ -56,8 +56,8 @@ struct Hidden<'a> {
     parameter: &'static str,
     before: Option<f64>,
     joint: usize,
-    /// Its candidate; `None` for a torque limit.
-    column: Option<(usize, f64)>,
+    /// Its column, and its candidate; `None` for a torque limit.
+    column: Option<(usize, usize)>,
 }
 
 /// A tried motion.
@@ -197,7 +197,11 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
     let mut seen = prospect.visibility(outlook, &wanted).into_iter();
     let size = |hidden: &Hidden<'_>| match hidden.column {
         None => Some(outlook.largest[hidden.joint]),
-        Some((_, needed)) => seen.next().map(|v| v.least(needed)).filter(|size| size.is_finite()),
+        Some((column, candidate)) => {
+            let candidate = &prospect.last.study.candidates[candidate];
+            let least = observability::least(prospect.last, candidate, column, &seen.next()?);
+            least.and_then(|least| least.size)
+        }
     };
     hidden.iter().map(size).collect()
 }
@@ -234,7 +238,7 @@ fn confusions(
                 alias.is_some_and(|(hypothesis, place)| hypothesis.name() == Some(rival.effect) && place == joint);
             let instead: Vec<(Vec<usize>, Vec<usize>)> = if is_alias {
                 // In the finding's place, this alternative would be the finding itself.
-                vec![(selected.fit.columns.clone(), Vec::new())]
+                vec![(selected.fit.selected().to_vec(), Vec::new())]
             } else if this.hypothesis.spec().same_on_all_joints == Some(rival.effect) {
                 let is_factor = |c: &usize| study.candidates[*c].hypothesis.name() == Some(rival.effect);
                 let all: Vec<usize> = (0..study.candidates.len()).filter(is_factor).collect();
@@ -297,9 +301,10 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
         }
         let parameter = *spec.main.first()?;
         let mut candidates = study.candidates.iter();
-        let candidate = candidates
-            .find(|candidate| candidate.hypothesis.name() == Some(entry.effect) && candidate.joint == Some(joint))?;
-        let column = candidate
+        let candidate = candidates.position(|candidate| {
+            candidate.hypothesis.name() == Some(entry.effect) && candidate.joint == Some(joint)
+        })?;
+        let column = study.candidates[candidate]
             .columns
             .iter()
             .rev()
@@ -309,7 +314,7 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
             parameter,
             before: entry.would_be_seen_above.values().next().copied(),
             joint,
-            column: Some((*column, observability::needed(last, candidate))),
+            column: Some((*column, candidate)),
         })
     };
     hidden.iter().filter_map(of).collect()
@@ -331,8 +336,8 @@ fn described(
         let barred = if !confusion.is_explained {
             Some(Obstacle::Unexplained)
         } else {
-            // A pair that the recordings already distinguish is not a confusion.
-            (before[k][0] >= before[k][1].min(needed)).then_some(Obstacle::NoPrediction)
+            // A pair that the recordings already distinguish reliably is not a confusion.
+            (before[k][0] >= SURELY_RESOLVED * before[k][1].min(needed)).then_some(Obstacle::NoPrediction)
         };
         if after >= SURELY_RESOLVED * needed && barred.is_none() {
             separates.push(Separation {
@@ -340,7 +345,7 @@ fn described(
                 rival,
                 before: before[k][0],
                 after,
-                needed,
+                needed: SURELY_RESOLVED * needed,
             });
             continue;
         }

@@ -11,7 +11,9 @@ mod change;
 mod dependence;
 mod different_load;
 mod doubt;
+mod joint_fit;
 mod next_experiment;
+mod not_diagnosed;
 mod recording_names;
 mod schema;
 mod verdict;
@@ -20,7 +22,9 @@ pub use change::Change;
 pub use dependence::{Axis, Dependence};
 pub use different_load::DifferentLoad;
 pub use doubt::Doubt;
+pub use joint_fit::JointFit;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
+pub use not_diagnosed::NotDiagnosed;
 pub use recording_names::{RecordingNames, UsedPart};
 pub use schema::json_schema;
 pub use verdict::Verdict;
@@ -63,6 +67,9 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// Structured residuals that no effect in the catalogue explains.
     pub unexplained: Vec<Unexplained>,
+    /// Joints whose torque channels hold no usable torque. What is said about the recordings is about the other joints.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_diagnosed: Vec<NotDiagnosed>,
     /// Effects that are not testable with these recordings.
     pub not_observable: Vec<NotObservable>,
     /// The reasons why the data are not sufficient for a diagnosis; empty if they are.
@@ -296,47 +303,6 @@ pub struct Region {
     pub residual: f64,
     /// RMS of the augmented residual there, over the torque's standard deviation.
     pub residual_augmented: f64,
-}
-
-/// How well one joint's torque is predicted. NRMSE: RMS error over the standard deviation of the measured torque.
-#[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
-pub struct JointFit {
-    /// Standard deviation of the measured torque, training recordings (N m or N).
-    pub torque_std: f64,
-    /// Standard deviation of the noise after filtering (N m or N).
-    pub noise: f64,
-    /// Held-out NRMSE of the nominal model over the samples in motion (over all where the joint hardly moves); `None` where
-    /// there is no held-out recording.
-    pub held_out_nrmse_nominal: Option<f64>,
-    /// Held-out NRMSE with the named effects.
-    pub held_out_nrmse_augmented: Option<f64>,
-    /// Held-out NRMSE with a correction learned (IJL) from the same recordings.
-    pub held_out_nrmse_learned: Option<f64>,
-    /// Held-out NRMSE of the exported model: the links' inertial parameters and the named effects. The augmented model also
-    /// contains the background's corrections of friction and torque constants, which no file holds.
-    pub held_out_nrmse_exported: Option<f64>,
-    /// Held-out NRMSE of full linear identification on the same recordings: least squares on all inertial parameters, viscous
-    /// and Coulomb friction, drive inertia and a constant of every joint.
-    pub held_out_nrmse_identified: Option<f64>,
-    /// NRMSE with the named effects over the samples at rest: the excess over the torque that dry friction may hold.
-    pub held_out_nrmse_resting: Option<f64>,
-    /// NRMSE of the nominal model over the samples at rest.
-    pub held_out_nrmse_resting_nominal: Option<f64>,
-    /// NRMSE of the nominal model, training recordings, samples in motion.
-    pub train_nrmse_nominal: f64,
-    /// NRMSE with the named effects, training recordings, samples in motion.
-    pub train_nrmse_augmented: f64,
-    /// Autocorrelation of the augmented residual at a lag of 0.1 s (0: white).
-    pub residual_autocorrelation: f64,
-    /// Autocorrelation of the nominal residual at a lag of 0.1 s.
-    pub residual_autocorrelation_nominal: f64,
-}
-
-impl JointFit {
-    /// The error (NRMSE) with the named effects: the held-out one if there is one.
-    pub fn error(&self) -> f64 {
-        self.held_out_nrmse_augmented.unwrap_or(self.train_nrmse_augmented)
-    }
 }
 
 /// The estimate of a link's inertial parameters.

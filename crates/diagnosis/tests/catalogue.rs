@@ -352,6 +352,8 @@ fn a_dead_channel_is_omitted() {
         assert!(finding.share < 1.0, "{}", finding.sentence);
     }
     assert!(!report.fit.contains_key("elbow"), "{:?}", report.fit["elbow"]);
+    let not_diagnosed: Vec<_> = report.not_diagnosed.iter().map(|group| &group.joints[..]).collect();
+    assert_eq!(not_diagnosed, [["elbow"]]);
     assert!(
         report.fit["turn"]
             .held_out_nrmse_augmented

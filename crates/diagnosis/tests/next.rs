@@ -83,6 +83,33 @@ fn a_faster_motion_distinguishes_viscous_friction_from_drag() {
     assert!(!is_confused(&second, "viscous_friction", "quadratic_drag"));
 }
 
+/// Links that are all wrong explain as much of the recordings in the prediction as they do in the diagnosis.
+#[test]
+fn a_motion_is_predicted_beside_links_that_are_all_wrong() {
+    let mut believed = trio();
+    for (link, factor, shift) in [(0, 1.08, 0.006), (1, 0.92, -0.008), (2, 1.1, 0.01)] {
+        let mut body = believed.joints()[link].inertia;
+        body.com += shift * arm::Vector3::new(1.0, -1.0, 1.0);
+        believed = believed.with_link_inertia(link, body).with_scaled_link(link, factor);
+    }
+    let options = Options {
+        next: true,
+        ..Options::default()
+    };
+    let diagnosis = diagnosed_with(&believed, &trio(), &friction, &options).expect("it can be diagnosed");
+    assert!(!diagnosis.report.inertials.is_empty(), "no link is wrong");
+    assert!(is_confused(&diagnosis, "viscous_friction", "quadratic_drag"));
+    let next = diagnosis.report.next_experiment.expect("it was asked for");
+    // Without the background, no pair was predicted.
+    let is_predicted = |pair: &diagnosis::NotSeparated| pair.kind != Obstacle::NoPrediction;
+    let is_any_predicted = !next.separates.is_empty() || next.not_separated.iter().any(is_predicted);
+    assert!(is_any_predicted, "{next:#?}");
+    for seen in &next.shows {
+        let is_an_angle = seen.effect == "encoder_offset";
+        assert!(!is_an_angle || seen.after < std::f64::consts::PI, "{seen:?}");
+    }
+}
+
 #[test]
 fn a_motion_stays_within_the_limits() {
     let (diagnosis, next) = proposed(&friction);

@@ -8,7 +8,7 @@ use effects::Quantity;
 
 use crate::block::{Block, table, text};
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, markdown, next_words, numbers, sizes, terminal, words};
+use crate::{alternatives, doubts, markdown, next_words, not_diagnosed, numbers, sizes, terminal, words};
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
 pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
@@ -39,6 +39,8 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     for reason in &report.not_enough_data {
         blocks.push(text(format!("Not enough data: {reason}.")));
     }
+    let reasons = not_diagnosed::reasons(report);
+    blocks.extend(reasons.into_iter().map(|reason| text(format!("{reason}."))));
     blocks.extend(findings(report));
     blocks.extend(unexplained(report, arm));
     blocks.extend(errors(report, arm));

@@ -25,6 +25,7 @@ pub mod doubts;
 pub mod left_out;
 mod markdown;
 pub mod next_words;
+mod not_diagnosed;
 pub mod numbers;
 mod page;
 mod regions;

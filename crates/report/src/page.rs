@@ -75,6 +75,7 @@ impl<'a> Page<'a> {
         let all = [
             self.doubts(),
             self.overview(),
+            self.not_diagnosed(),
             self.warnings(),
             self.next_steps(),
             self.whole_arm(),

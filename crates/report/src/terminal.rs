@@ -9,7 +9,7 @@ use diagnosis::statistics::rms;
 use diagnosis::{Finding, Located, NotObservable, Report, Unexplained};
 
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, next_words, numbers, regions, words};
+use crate::{alternatives, doubts, next_words, not_diagnosed, numbers, regions, words};
 
 mod findings;
 pub(crate) mod steps;
@@ -104,6 +104,9 @@ fn opening(report: &Report) -> String {
         text.push('\n');
     }
     text += &wrapped(&words::verdict(report), "");
+    for reason in not_diagnosed::reasons(report) {
+        text += &wrapped(&reason, "- ");
+    }
     for group in doubts::groups(&report.doubts, Certainty::Certain, report) {
         for sentence in &group.texts {
             text += &wrapped(sentence, "- ");
@@ -134,6 +137,9 @@ pub fn prose(report: &Report) -> String {
             unexplained(report, open),
             open.next
         );
+    }
+    for reason in not_diagnosed::reasons(report) {
+        let _ = writeln!(text, "- {reason}");
     }
     for reason in &report.not_enough_data {
         let _ = writeln!(text, "- not enough data: {reason}");

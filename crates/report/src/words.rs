@@ -11,7 +11,7 @@ use diagnosis::{
 };
 use effects::Regressor;
 
-use crate::numbers;
+use crate::{not_diagnosed, numbers};
 
 /// The verdict states the largest held-out error with the effects found if it is at least this (over the torque's standard
 /// deviation).
@@ -237,8 +237,14 @@ pub fn torque_lag(report: &Report) -> Option<String> {
     ))
 }
 
-/// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so.
+/// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so. A sentence on joints
+/// that were not diagnosed comes before it.
 pub fn verdict(report: &Report) -> String {
+    let others = of_diagnosed(report);
+    not_diagnosed::before_verdict(report).map_or_else(|| others.clone(), |joints| format!("{joints} {others}"))
+}
+
+fn of_diagnosed(report: &Report) -> String {
     // What is in the recordings from before only is no error of the model.
     let found: Vec<&Finding> = report.findings.iter().filter(|finding| finding.acts_today()).collect();
     let effects = count(found.len(), "effect");

@@ -31,9 +31,9 @@ pub enum Why {
 }
 
 impl Why {
-    /// The note on the joint `name`.
-    pub fn remark(self, name: &str) -> String {
-        let what = match self {
+    /// Why the joint is not diagnosed, as a clause.
+    pub fn clause(self) -> String {
+        match self {
             Self::Dead => {
                 "the measured torque is almost constant while the model's, or that of other joints, varies".to_owned()
             }
@@ -51,8 +51,7 @@ impl Why {
                 "neither masses nor friction of any size explain more than {:.0} % of the torque channel's power; it is not the torque of this joint",
                 100.0 * part
             ),
-        };
-        format!("{name}: {what}; the joint is not diagnosed")
+        }
     }
 }
 

@@ -6,8 +6,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{deviation, mean_square};
-use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, LEAST_INERTIA, NO_GRAVITY};
-use crate::words::list;
+use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, LEAST_INERTIA, NO_GRAVITY, SOME_GRAVITY};
 
 /// The joints that need torque against gravity, if the measured torques of none of them contain any: the controller reports them without
 /// what it adds against gravity, or counterweights carry the weight. Gravity in another direction than the model's is gravity.
@@ -16,31 +15,27 @@ pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Ve
     let found: Vec<(usize, Shown)> = joints
         .filter_map(|joint| Some((joint, measured(motions, rigid, scales, gravity, joint)?)))
         .collect();
+    let loaded = || found.iter().filter(|(_, shown)| shown.weight >= LEAST_GRAVITY);
     let lacks = |shown: &Shown| shown.gravity < NO_GRAVITY && shown.motion > LEAST_INERTIA;
-    let is_without = found.len() > 1 && found.iter().all(|(_, shown)| lacks(shown));
-    found
-        .into_iter()
-        .filter(|_| is_without)
-        .map(|(joint, _)| joint)
-        .collect()
+    let is_without = loaded().count() > 1 && loaded().all(|(_, shown)| lacks(shown));
+    // The controller that subtracts gravity does so on every joint, also where it is small.
+    let has_weight = |(joint, shown): &(usize, Shown)| (shown.weight >= SOME_GRAVITY).then_some(*joint);
+    found.iter().filter(|_| is_without).filter_map(has_weight).collect()
 }
 
-/// The note on the joints `names`.
-pub fn remark(names: &[&str]) -> String {
-    format!(
-        "{}: the measured torques contain no gravity, although these joints carry weight: they are not diagnosed. Either the controller reports them without the torques that it adds against gravity: record the whole torques, or add the gravity torques of the controller's model to the columns. Or counterweights or springs carry the weight: describe them with --known",
-        list(names)
-    )
-}
+/// Why these joints are not diagnosed.
+pub const CLAUSE: &str = "the measured torques contain no gravity, although these joints carry weight. Either the controller reports them without the torques that it adds against gravity: record the whole torques, or add the gravity torques of the controller's model to the columns. Or counterweights or springs carry the weight: describe them with --known";
 
 /// What a measured torque shows of gravity, and of inertia with that of the drive, over the model's.
 struct Shown {
+    /// Standard deviation of the model's gravity torque over that of its whole torque.
+    weight: f64,
     gravity: f64,
     motion: f64,
 }
 
-/// What the torque of `joint` shows, beside friction and a constant of any size. `None` if
-/// gravity is a small part of the model's torque, or if the joint hardly moves.
+/// What the torque of `joint` shows, beside friction and a constant of any size. `None` if it hardly moves, or if gravity does not load
+/// it.
 fn measured(
     motions: &Motions,
     rigid: &[Rigid],
@@ -79,8 +74,7 @@ fn measured(
         weight.extend(filtered(&of_weight));
         needed.extend(filtered(&|tick| rigid.tau[joint][tick]));
     }
-    let is_loaded = deviation(weight.iter()) >= LEAST_GRAVITY * deviation(needed.iter());
-    if torque.len() < LEAST_CHANNEL_ROWS || !is_loaded || deviation(weight.iter()) == 0.0 {
+    if torque.len() < LEAST_CHANNEL_ROWS || deviation(weight.iter()) == 0.0 {
         return None;
     }
     // Directions in which gravity has little torque are unknown: a ridge leaves them at zero.
@@ -103,6 +97,7 @@ fn measured(
     };
     let part = |of: f64, model: f64| if model > 0.0 { of / model } else { 0.0 };
     Some(Shown {
+        weight: part(deviation(weight.iter()), deviation(needed.iter())),
         gravity: part(shown(0, 3), deviation(weight.iter())),
         motion: part(shown(3, 5), deviation(columns[3].iter())),
     })

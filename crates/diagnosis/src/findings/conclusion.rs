@@ -222,6 +222,7 @@ impl Conclusion {
             warnings: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),
             unexplained: self.unexplained,
+            not_diagnosed: data.not_diagnosed,
             not_observable: self.not_observable,
             not_enough_data: self.not_enough_data,
             located: self.located,

@@ -43,6 +43,41 @@ impl Visibility {
     }
 }
 
+/// The least detectable size of a linear effect.
+pub struct Least {
+    /// Its share of the joint's torque.
+    pub share: f64,
+    /// The size; `None` if no robot can have it.
+    pub size: Option<f64>,
+}
+
+/// The least detectable size of `candidate`, whose `column` is as visible as `visibility` tells. `None` if its size is not a coefficient.
+pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: &Visibility) -> Option<Least> {
+    let Detectability::Linear {
+        is_of_first,
+        is_of_all_torque,
+        ..
+    } = candidate.hypothesis.spec().detectability
+    else {
+        return None;
+    };
+    let least = visibility.least(needed(last, candidate));
+    let share = if is_of_all_torque {
+        least
+    } else {
+        least * visibility.spread / visibility.torque.max(1e-300)
+    };
+    let (study, fit) = (&last.study, &last.judged.named.fit);
+    let is_beyond = share > BEYOND || is_beyond_physics(least, column, candidate, &study.table, fit, &study.data.arm);
+    let size = if is_of_first {
+        least / fit.coefficient(candidate.columns[0]).max(0.0)
+    } else {
+        least
+    };
+    let size = Some(size).filter(|size| !is_beyond && size.is_finite());
+    Some(Least { share, size })
+}
+
 /// The effects that are not testable in addition to those of the final fit.
 pub fn not_testable(last: &FinalFit) -> Vec<NotObservable> {
     let (data, products) = (&last.study.data, &last.products);
@@ -173,9 +208,12 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
                         let size = study.table.terms[candidate.columns[0]].sizes[0];
                         (size, is_seen(last, candidate, joint))
                     })
-                    .filter(|&(size, _)| may_be_named(size))
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+                if let Some(unnamed) = sizes.iter().position(|&(size, _)| !may_be_named(size)) {
+                    // Nothing is named above the last size, so that no effect is detectable from there.
+                    sizes.truncate(unnamed.saturating_sub(1));
+                }
                 if is_seen_below {
                     // The largest detectable size for which all smaller ones are detectable.
                     let last = sizes.iter().take_while(|(_, seen)| *seen).last();
@@ -187,11 +225,7 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
                     add(because, least.map(|&(size, _)| size), None);
                 }
             }
-            Detectability::Linear {
-                if_no_form,
-                is_of_first,
-                is_of_all_torque,
-            } => {
+            Detectability::Linear { if_no_form, .. } => {
                 let Some(candidate) = of(&study.candidates, kind, joint).next() else {
                     if let Some(because) = if_no_form {
                         add(because, None, None);
@@ -210,25 +244,8 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
                     torque: study.data.scales.torque[joint],
                     least_share: study.thresholds.least_share,
                 };
-                let least = visibility.least(needed(last, candidate));
-                let share = if is_of_all_torque {
-                    least
-                } else {
-                    least * visibility.spread / visibility.torque.max(1e-300)
-                };
-                if share > HIDDEN {
-                    let because = EXPLAINED;
-                    let (table, arm) = (&study.table, &study.data.arm);
-                    if share > BEYOND || is_beyond_physics(least, column, candidate, table, &selected.fit, arm) {
-                        add(because, None, None);
-                        continue;
-                    }
-                    let size = if is_of_first {
-                        least / selected.fit.coefficient(candidate.columns[0]).max(0.0)
-                    } else {
-                        least
-                    };
-                    add(because, size.is_finite().then_some(size), None);
+                if let Some(least) = least(last, candidate, column, &visibility).filter(|least| least.share > HIDDEN) {
+                    add(EXPLAINED, least.size, None);
                 }
             }
         }
@@ -258,7 +275,7 @@ fn of(candidates: &[Candidate], kind: Kind, joint: usize) -> impl Iterator<Item 
 }
 
 /// The evidence that a name needs here (nats); more where links are wrong and resemble it.
-pub fn needed(last: &FinalFit, candidate: &Candidate) -> f64 {
+fn needed(last: &FinalFit, candidate: &Candidate) -> f64 {
     let is_wrong = last.study.strengths.common() > 0.0;
     let beside_inertials = candidate.hypothesis.spec().least_beside_inertials.filter(|_| is_wrong);
     let least = candidate.cost.max(last.study.thresholds.least_evidence);

@@ -255,7 +255,7 @@ pub fn not_enough(last: &FinalFit) -> Vec<String> {
             "the training recordings are {all:.1} s long without the filter's ends; a diagnosis needs at least {LEAST_MOTION:.0} s of motion and several reversals of each joint"
         ));
     } else if data.scales.torque.iter().all(|&torque| torque <= 0.0) {
-        reasons.push("no joint has a torque that can be diagnosed; the notes say why".to_owned());
+        reasons.push("no joint has a torque that can be diagnosed".to_owned());
     } else if products.count.iter().all(|&count| count == 0.0) {
         reasons.push(format!("no joint moves in the training recordings{hidden}"));
     } else if longest < LEAST_MOTION {

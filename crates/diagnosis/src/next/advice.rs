@@ -1,4 +1,8 @@
 //! The experiment to make where no motion distinguishes two effects.
+
+use effects::EffectKind;
+use effects::arm::{LinkInertialError, Payload};
+
 use crate::report::{Confusable, NotSeparated, Obstacle};
 use crate::thresholds::{ALIAS, NEARLY_NATS};
 
@@ -49,7 +53,7 @@ pub fn not_separated(
         finding,
         rival,
         best,
-        needed,
+        needed: sure,
         kind,
         because,
         instead,
@@ -58,16 +62,28 @@ pub fn not_separated(
 
 /// The confusion of `finding` with `rival`, for which no motion is predicted.
 pub fn unpredicted(finding: Confusable, rival: Confusable) -> NotSeparated {
-    let because =
-        "the alternative is a correction of all inertial parameters together, for which no motion is predicted"
-            .to_owned();
+    // A payload is a change of the last link, and a link that is wrong by a factor is a link that is wrong.
+    let is_same_body = rival.joint.is_some()
+        && (finding.effect == Payload.spec().name
+            || finding.effect == LinkInertialError.spec().name && finding.joint == rival.joint);
+    let (kind, because) = if is_same_body {
+        let because = "they are the same change of one link, with the same torque in every motion".to_owned();
+        (Obstacle::SameTorque, because)
+    } else {
+        let of = match &rival.joint {
+            Some(joint) => format!("the inertial parameters of the link after {joint}"),
+            None => "all inertial parameters together".to_owned(),
+        };
+        let because = format!("the alternative is a correction of {of}, for which no motion is predicted");
+        (Obstacle::NoPrediction, because)
+    };
     let instead = instead(finding.effect, rival.effect).to_owned();
     NotSeparated {
         finding,
         rival,
         best: 0.0,
         needed: NEARLY_NATS,
-        kind: Obstacle::NoPrediction,
+        kind,
         because,
         instead,
     }

@@ -32,7 +32,7 @@ pub struct Pair {
 
 /// The recordings reduced to some columns, to which a motion can be added.
 pub struct Prospect<'a> {
-    last: &'a FinalFit,
+    pub last: &'a FinalFit,
     about: About,
     nominal: Vec<f64>,
     /// Indices of the study's columns, in ascending order.
@@ -260,13 +260,15 @@ impl<'a> Prospect<'a> {
             let places = self.places(columns);
             outlook.products.fit(&self.bare, &places, &outlook.weights)
         };
-        let with = fit(&self.last.judged.named.fit.columns).loss;
+        let named = &self.last.judged.named.fit;
+        let background = &named.columns[..named.background];
+        let with = fit(named.selected()).loss;
         let without = fit(&pair.without).loss;
         let mut rivals: Vec<_> = pair.instead.iter().map(|(set, added)| (fit(set), set, added)).collect();
         rivals.sort_by(|a, b| a.0.loss.total_cmp(&b.0.loss));
         let study = &self.last.study;
         let possible = rivals.into_iter().find_map(|(mut fit, set, added)| {
-            fit.columns.clone_from(set);
+            fit.columns = [background, set].concat();
             let is_possible = |&c: &usize| is_possible(&study.candidates[c], &study.table, &fit, &study.data.arm);
             added.iter().all(is_possible).then_some(fit.loss)
         });
@@ -277,7 +279,7 @@ impl<'a> Prospect<'a> {
     /// The detectability of columns in addition to the findings, each on a joint.
     pub fn visibility(&self, outlook: &Outlook, wanted: &[(usize, usize)]) -> Vec<Visibility> {
         let products = &outlook.products;
-        let columns = self.places(&self.last.judged.named.fit.columns);
+        let columns = self.places(self.last.judged.named.fit.selected());
         let fit = products.fit(&self.bare, &columns, &outlook.weights);
         let of = |&(joint, column): &(usize, usize)| {
             let place = self.columns.binary_search(&column).ok()?;

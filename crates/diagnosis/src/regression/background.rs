@@ -50,6 +50,20 @@ pub struct Background {
     pub friction: f64,
 }
 
+impl Background {
+    /// The same background in a table that has only `columns`, in ascending order, which contain its own.
+    pub fn among(&self, columns: &[usize]) -> Self {
+        let places = self
+            .columns
+            .iter()
+            .map(|&column| columns.partition_point(|&other| other < column));
+        Self {
+            columns: places.collect(),
+            ..self.clone()
+        }
+    }
+}
+
 impl Prior {
     /// The prior for an arm with the inertial `parameters` (ten per link) and the least `radii` of gyration about which they may have. The torques of its joints have the standard
     /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that

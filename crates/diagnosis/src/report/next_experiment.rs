@@ -20,7 +20,7 @@ pub struct NextExperiment {
     pub limits: Vec<JointLimits>,
 }
 
-/// The evidence (nats) for a finding against an alternative, before and after the motion. Above `needed`, the two are
+/// The evidence (nats) for a finding against an alternative, before and after the motion. From `needed` on, the two are reliably
 /// distinguished.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Separation {
@@ -32,7 +32,7 @@ pub struct Separation {
     pub before: f64,
     /// The evidence with the motion (nats).
     pub after: f64,
-    /// The evidence that distinguishes them (nats).
+    /// The evidence that reliably distinguishes them (nats).
     pub needed: f64,
 }
 
@@ -45,7 +45,7 @@ pub struct NotSeparated {
     pub rival: Confusable,
     /// The largest evidence of all motions that were tried (nats).
     pub best: f64,
-    /// The evidence that distinguishes them (nats).
+    /// The evidence that reliably distinguishes them (nats).
     pub needed: f64,
     /// The reason in one word.
     pub kind: Obstacle,
@@ -67,7 +67,7 @@ pub enum Obstacle {
     AnotherMotion,
     /// The joint has an unexplained residual, so that the outcome of a motion cannot be predicted.
     Unexplained,
-    /// No outcome is predicted: the alternative is a correction of all inertial parameters together, or the prediction fails on the
+    /// No outcome is predicted: the alternative is a correction of a link's inertial parameters, or of all, or the prediction fails on the
     /// present recordings, because it states that they already distinguish the two.
     #[serde(rename = "not_foretold")]
     NoPrediction,

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
-use crate::thresholds::{MARGIN_SCALE, NEARLY, NEARLY_NATS, PAIRED_RIVALS, PARTNERS, SUREST, TRIED_RIVALS};
+use crate::thresholds::{
+    LEAST_LEVEL, MARGIN_SCALE, NEARLY, NEARLY_NATS, PAIRED_RIVALS, PARTNERS, SUREST, TRIED_RIVALS,
+};
 
 /// An effect and its joint; `None` is the whole arm.
 pub type Rival = (Hypothesis, Option<usize>);
@@ -81,7 +83,7 @@ pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) 
         let other = &study.candidates[c];
         other.hypothesis.is(&CoulombFriction)
             && other.joint == finding.joint
-            && selected.fit.coefficient(other.columns[0]) > selected.fit.coefficient(constant).abs()
+            && selected.fit.coefficient(other.columns[0]) > LEAST_LEVEL * selected.fit.coefficient(constant).abs()
     };
     let has_alias = finding.hypothesis.is(&TorqueOffset) && set.iter().any(is_larger_friction);
     has_alias.then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))

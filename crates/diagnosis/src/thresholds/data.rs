@@ -158,6 +158,9 @@ pub const LEAST_GRAVITY: f64 = 0.3;
 /// The gravity that measured torques show over the model's, below which they contain none. Source: five simulated recordings without gravity,
 /// where it is up to 0.05, and ten real robots with it.
 pub const NO_GRAVITY: f64 = 0.15;
+/// The part of the model's torque that is gravity's (standard deviations) from which a joint is not diagnosed if the torques of those that
+/// carry much weight contain no gravity. Source: choice; the parts of joints are near zero, or above it.
+pub const SOME_GRAVITY: f64 = 0.03;
 /// The inertia that such torques show at least over the model's: a torque in another unit shows little of both. Source: choice.
 pub const LEAST_INERTIA: f64 = 0.5;
 /// The ridge of that regression, over the mean square of each column.

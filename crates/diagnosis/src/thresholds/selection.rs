@@ -110,6 +110,9 @@ pub const LEAST_OF_THE_LINK: f64 = 0.3;
 /// The mass of a payload, as a part of the last link's mass in the URDF, below which it needs [`LEAST_BESIDE_SOME_LINKS`]. Source: of
 /// thirteen payloads in simulated cases, the smallest true one is 0.17 of it, and a false one 0.10.
 pub const LEAST_MOUNTED: f64 = 0.125;
+/// The Coulomb level over a constant torque from which the two may be friction in one direction only: below one, because the fit of a
+/// friction that is zero in the other direction may be negative. Source: choice.
+pub const LEAST_LEVEL: f64 = 0.9;
 /// The number of the most promising alternatives that are fitted in full. Source: first diagnosis.
 pub const TRIED_RIVALS: usize = 8;
 /// The number of effects that explain too little alone and are tried in pairs. Source: as for [`PARTNERS`].

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ._core import JointwiseError
 from ._diagnose import RecordingWarning, diagnose
 from ._dynamics import InverseDynamics
-from ._result import Alternative, Diagnosis, DifferentLoad, Doubt, Effect, JointFit, NotTestable, Parameter, Unexplained
+from ._result import Alternative, Diagnosis, DifferentLoad, Doubt, Effect, JointFit, NotDiagnosed, NotTestable, Parameter, Unexplained
 
 if TYPE_CHECKING:
     from ._learning import IndependentJointLearning
@@ -24,6 +24,7 @@ __all__ = [
     "InverseDynamics",
     "JointFit",
     "JointwiseError",
+    "NotDiagnosed",
     "NotTestable",
     "Parameter",
     "RecordingWarning",

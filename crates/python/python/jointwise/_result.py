@@ -190,6 +190,15 @@ class Doubt:
 
 
 @dataclass(frozen=True)
+class NotDiagnosed:
+    """Joints that are not diagnosed, because their torque channels hold no usable torque."""
+
+    joints: tuple[str, ...]
+    because: str
+    """The reason, and the remedy."""
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """The result of a diagnosis."""
 
@@ -204,6 +213,8 @@ class Diagnosis:
     joints: Mapping[str, JointFit]
     """The errors of each joint."""
     unexplained: tuple[Unexplained, ...]
+    not_diagnosed: tuple[NotDiagnosed, ...]
+    """The joints whose torque channels hold no usable torque; the rest of the result is about the other joints."""
     not_testable: tuple[NotTestable, ...]
     not_enough_data: tuple[str, ...]
     """The reasons why the data are not sufficient for a diagnosis; empty if there are."""
@@ -231,6 +242,9 @@ class Diagnosis:
             unexplained=tuple(
                 Unexplained(of["joint"], of["share"], tuple(of["depends_on"]), of["next"])
                 for of in report["unexplained"]
+            ),
+            not_diagnosed=tuple(
+                NotDiagnosed(tuple(of["joints"]), of["because"]) for of in report.get("not_diagnosed", [])
             ),
             not_testable=tuple(
                 NotTestable(

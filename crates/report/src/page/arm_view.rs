@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use super::key;
 use crate::chart::Svg;
-use crate::{numbers, terminal, words};
+use crate::{not_diagnosed, numbers, terminal, words};
 
 const WIDTH: f64 = 800.0;
 /// The part of the picture that shows the arm: its left and right end, and its upper end.
@@ -270,6 +270,9 @@ fn labels(
             } else {
                 format!("{below}, unexplained residual")
             };
+        }
+        if not_diagnosed::has(report, &joint.name) {
+            below = "not diagnosed".into();
         }
         let name = match error {
             Some(error) => format!(

@@ -9,7 +9,7 @@ use super::place::regions;
 use super::table::{name, number, table, words as text};
 use super::zoom::zoomable;
 use super::{Page, Section, key};
-use crate::{alternatives, numbers, sizes, words};
+use crate::{alternatives, not_diagnosed, numbers, sizes, words};
 
 /// The share of a joint's torque from which a whole-arm effect is shown in the joint's section.
 const SHOWN_SHARE: f64 = 0.02;
@@ -133,7 +133,11 @@ impl Page<'_> {
 
     /// The residuals of the joints without a section, in a collapsed block.
     pub(super) fn quiet_joints(&self) -> Option<Section> {
-        let quiet = (0..self.figures.arm.dof()).filter(|&joint| !self.has_section(joint));
+        let is_quiet = |joint: &usize| {
+            let name = &self.figures.arm.joints()[*joint].name;
+            !self.has_section(*joint) && !not_diagnosed::has(self.report, name)
+        };
+        let quiet = (0..self.figures.arm.dof()).filter(is_quiet);
         let strips: Vec<_> = quiet
             .map(|joint| (joint, self.strip(joint, &[])))
             .filter(|(_, strip)| !strip.0.is_empty())

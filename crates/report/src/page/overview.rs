@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::table::{brief_table, number, words as text};
 use super::{Page, Section, key};
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, numbers, sizes, terminal, words};
+use crate::{alternatives, doubts, not_diagnosed, numbers, sizes, terminal, words};
 
 impl Page<'_> {
     /// `4 recordings, 1 held out`.
@@ -79,6 +79,13 @@ impl Page<'_> {
     pub(super) fn doubts(&self) -> Option<Section> {
         let title = html! { "Units, signs, order or zeros first" };
         self.doubted(&self.report.doubts, Certainty::Certain, "units", title)
+    }
+
+    /// The joints that are not diagnosed, with the reasons.
+    pub(super) fn not_diagnosed(&self) -> Option<Section> {
+        let reasons = not_diagnosed::reasons(self.report);
+        let body = html! { ul.steps { @for reason in &reasons { li { (reason) "." } } } };
+        (!reasons.is_empty()).then(|| Section::new("not-diagnosed", html! { "Not diagnosed" }, body))
     }
 
     /// What contradicts the URDF and does not prevent the diagnosis.

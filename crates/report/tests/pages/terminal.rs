@@ -1,5 +1,6 @@
 //! The text for the terminal is narrow and complete.
 
+use diagnosis::NotDiagnosed;
 use report::terminal;
 
 use crate::made_up::{self, Plot};
@@ -114,6 +115,35 @@ fn a_payload_of_negative_mass_is_a_tool_that_is_not_mounted() {
     assert_eq!(report::words::effect(finding), "tool not mounted");
     let text = terminal::diagnosis(&report);
     assert!(text.contains("mounted"), "{text}");
+}
+
+/// Joints without a usable torque are in the first sentence, with the reason below it, and no output counts them among the joints that
+/// the model explains.
+#[test]
+fn joints_that_are_not_diagnosed_come_first() {
+    let (mut report, traces, arm) = made_up::diagnosis(7, Plot::Clean);
+    let joint = arm.joints()[2].name.clone();
+    report.fit.remove(&joint);
+    report.not_diagnosed.push(NotDiagnosed {
+        joints: vec![joint.clone()],
+        because: "the measured torque is almost constant".to_owned(),
+    });
+    let first = format!("{joint} was not diagnosed; what follows is about the other joints.");
+    let reason = format!("{joint} is not diagnosed: the measured torque is almost constant");
+    let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for text in [terminal::diagnosis(&report), terminal::complete(&report, &arm)] {
+        let text = joined(&text);
+        assert!(text.starts_with(&first) && text.contains(&reason), "{text}");
+    }
+    let markdown = report::diagnosis_markdown(&report, &arm);
+    assert!(
+        markdown.contains(&format!("**{first}")) && markdown.contains(&reason),
+        "{markdown}"
+    );
+    let page = report::page(&report, &traces, &arm);
+    assert!(page.contains(&format!("<h1>{first}")) && page.contains(&reason));
+    let strip = format!("Joint 3 · {joint}</h3>");
+    assert!(!page.contains(&strip), "its residual is no error of the model");
 }
 
 #[test]

@@ -149,7 +149,7 @@ pub struct DiagnoseArgs {
     #[arg(long, short)]
     pub quiet: bool,
 
-    /// Exit with status 3 unless the model explains the recordings without any effect
+    /// Exit with status 3 unless the model explains the recordings of all joints without any effect
     #[arg(long)]
     pub fail_on_mismatch: bool,
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use arm::Arm;
-use diagnosis::{Diagnosis, Step, Verdict};
+use diagnosis::{Diagnosis, Report, Step, Verdict};
 use study::effect_file::EffectFile;
 use study::notes::Notes;
 use study::robot::RobotFile;
@@ -57,7 +57,13 @@ fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     drop(deferred);
     print(args, &arm, &diagnosis, &written)?;
     written.files.finish()?;
-    let explains = diagnosis.report.verdict == Verdict::NoMismatch && diagnosis.report.findings.is_empty();
+    let Report {
+        verdict,
+        findings,
+        not_diagnosed,
+        ..
+    } = &diagnosis.report;
+    let explains = *verdict == Verdict::NoMismatch && findings.is_empty() && not_diagnosed.is_empty();
     Ok(if args.fail_on_mismatch && !explains {
         ExitCode::from(MISMATCH)
     } else {

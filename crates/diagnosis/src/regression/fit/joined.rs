@@ -6,7 +6,8 @@ use super::Products;
 use crate::regression::table::{Gram, Table};
 
 impl Products {
-    /// The products of `columns` alone, in the order of [`Table::bare`] for their terms.
+    /// The products of `columns` alone, in the order of [`Table::bare`] for their terms. They are in ascending order, and those of the
+    /// background are among them.
     pub fn picked(&self, table: &Table, columns: &[usize]) -> Self {
         let of = |joint: usize| {
             let places: Vec<Option<usize>> = columns.iter().map(|&column| table.place[joint][column]).collect();
@@ -14,14 +15,14 @@ impl Products {
         };
         Self {
             gram: Arc::new((0..self.gram.len()).map(of).collect()),
-            background: None,
+            background: self.background.as_ref().map(|all| Arc::new(all.among(columns))),
             eliminated: Arc::default(),
             ..self.clone()
         }
     }
 
     /// These products and `more` of the same columns, whose rows have an error of variance `variance` on each joint ((N m)²
-    /// or N²), with the evidence and the floor of both together.
+    /// or N²), with the evidence and the floor of both together, and the background of these.
     pub fn joined(&self, more: &Self, variance: &[f64], evidence: Vec<f64>, floor: Vec<f64>) -> Self {
         let of = |joint: usize| {
             let grams = [&self.gram[joint], &more.gram[joint]];
@@ -30,7 +31,7 @@ impl Products {
         };
         Self {
             gram: Arc::new((0..self.gram.len()).map(of).collect()),
-            background: None,
+            background: self.background.clone(),
             eliminated: Arc::default(),
             count: self.count.iter().zip(&more.count).map(|(a, b)| a + b).collect(),
             evidence,

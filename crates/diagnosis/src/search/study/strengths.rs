@@ -201,7 +201,9 @@ impl Study {
             if hopeless.contains(&part) {
                 continue;
             }
-            let next = self.with_few_more(&strengths, selected, allowed);
+            let Some(next) = self.with_few_more(&strengths, selected, allowed) else {
+                continue;
+            };
             let beyond = next.score - selected.score;
             if beyond > HOPELESS_EXCHANGE {
                 hopeless.push(part);
@@ -214,8 +216,9 @@ impl Study {
     }
 
     /// `selected` with a background of other `strengths`, and with those of the candidates `allowed` that gain most: as many as make it
-    /// better than `selected`, or a few, unless it is too far from that.
-    fn with_few_more(&self, strengths: &Strengths, selected: &Selection, allowed: &[usize]) -> Selection {
+    /// better than `selected`, or a few, unless it is too far from that. `None` if a member of `selected` becomes impossible: it would be
+    /// removed later, and without it the smaller background may be far worse.
+    fn with_few_more(&self, strengths: &Strengths, selected: &Selection, allowed: &[usize]) -> Option<Selection> {
         let products = self.products_at(strengths);
         let problem = self.problem(&products);
         let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
@@ -233,7 +236,8 @@ impl Study {
                 break;
             }
         }
-        next
+        let stays = |&c: &usize| problem.is_possible(c, &next.fit) || !problem.is_possible(c, &selected.fit);
+        selected.set.iter().all(stays).then_some(next)
     }
 
     /// `selected` with the strengths of the background that the evidence prefers.

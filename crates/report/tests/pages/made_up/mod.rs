@@ -159,6 +159,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             })
             .into_iter()
             .collect(),
+        not_diagnosed: Vec::new(),
         not_observable: not_observable(&arm),
         not_enough_data: if plot == Plot::TooShort {
             vec![
