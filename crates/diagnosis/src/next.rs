@@ -17,7 +17,7 @@ use crate::report::{
     Confusable, Finding, NextExperiment, NotObservable, NotSeparated, Obstacle, Separation, Shows, Unexplained,
 };
 use crate::selection::{FinalFit, rivals};
-use crate::thresholds::{COUNTED, MORE_DETECTABLE, SURELY_RESOLVED, WEIGHT_OF_SIZES};
+use crate::thresholds::{COUNTED, MORE_DETECTABLE, SURELY_RESOLVED, SURELY_RESOLVED_BESIDE, WEIGHT_OF_SIZES};
 
 mod advice;
 pub(crate) mod designs;
@@ -104,6 +104,11 @@ pub fn propose(
     };
     let effects: Vec<Effect> = known.iter().cloned().chain(conclusion.effects()).collect();
     let limits = Limits::new(&last.study.data, (arm, &effects), unexplained.is_empty())?;
+    let sure = if last.study.strengths.is_none() {
+        SURELY_RESOLVED
+    } else {
+        SURELY_RESOLVED_BESIDE
+    };
     let now = prospect.now();
     let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
     let attempt = |design: Design| -> Option<Tried> {
@@ -129,7 +134,7 @@ pub fn propose(
         let (design, parts) = (list[best].design.clone(), list[best].parts);
         match design.surely_within(&limits, parts) {
             Some((_, within)) if within == parts => {
-                let mut next = described(&limits, &confusions, &hidden, &before, &list, best);
+                let mut next = described(sure, &limits, &confusions, &hidden, &before, &list, best);
                 next.report.not_separated.extend(unpredicted);
                 return Ok(next);
             }
@@ -320,7 +325,9 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
     hidden.iter().filter_map(of).collect()
 }
 
+/// The next experiment with the motion `best` of `list`. A pair is promised from `sure` times the evidence that distinguishes it.
 fn described(
+    sure: f64,
     limits: &Limits,
     confusions: &[Confusion],
     hidden: &[Hidden<'_>],
@@ -339,13 +346,13 @@ fn described(
             // A pair that the recordings already distinguish reliably is not a confusion.
             (before[k][0] >= SURELY_RESOLVED * before[k][1].min(needed)).then_some(Obstacle::NoPrediction)
         };
-        if after >= SURELY_RESOLVED * needed && barred.is_none() {
+        if after >= sure * needed && barred.is_none() {
             separates.push(Separation {
                 finding,
                 rival,
                 before: before[k][0],
                 after,
-                needed: SURELY_RESOLVED * needed,
+                needed: sure * needed,
             });
             continue;
         }
@@ -356,7 +363,7 @@ fn described(
             finding,
             rival,
             furthest,
-            SURELY_RESOLVED * furthest[1],
+            sure * furthest[1],
             barred,
         ));
     }

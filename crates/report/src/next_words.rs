@@ -47,8 +47,10 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
 fn pairs<'a>(pairs: impl Iterator<Item = (&'a Confusable, &'a Confusable)>) -> Vec<String> {
     let mut groups: Vec<(&Confusable, &'static str, Vec<&Confusable>)> = Vec::new();
     for (finding, rival) in pairs {
-        let is_same =
-            |group: &&mut (&Confusable, &'static str, Vec<&Confusable>)| group.0 == finding && group.1 == rival.effect;
+        // An effect of the whole arm is not one of a joint.
+        let is_same = |group: &&mut (&Confusable, &'static str, Vec<&Confusable>)| {
+            group.0 == finding && group.1 == rival.effect && group.2[0].joint.is_some() == rival.joint.is_some()
+        };
         match groups.iter_mut().find(is_same) {
             Some(group) => group.2.push(rival),
             None => groups.push((finding, rival.effect, vec![rival])),
@@ -114,6 +116,10 @@ mod tests {
             because: String::new(),
             instead: "weigh it".into(),
         };
+        let of_arm = NotSeparated {
+            rival: on("torque_scale", None),
+            ..undecided("a")
+        };
         let next = NextExperiment {
             duration: Some(25.0),
             separates: vec![Separation {
@@ -123,7 +129,7 @@ mod tests {
                 after: 20.0,
                 needed: 4.0,
             }],
-            not_separated: vec![undecided("a"), undecided("b")],
+            not_separated: vec![undecided("a"), undecided("b"), of_arm],
             shows: Vec::new(),
             limits: Vec::new(),
         };
@@ -134,7 +140,7 @@ mod tests {
             "{said:?}"
         );
         assert!(
-            said[1].contains("torque scale on 2 joints; instead, weigh it"),
+            said[1].contains("torque scale on 2 joints") && said[1].ends_with("from torque scale; instead, weigh it"),
             "{said:?}"
         );
     }

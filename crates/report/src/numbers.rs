@@ -158,7 +158,7 @@ pub fn with_interval(name: &str, parameter: &Parameter) -> String {
     let (half, middle) = (0.5 * (high - low), 0.5 * (high + low));
     let text = if !half.is_finite() {
         format!("≈ {}", fixed(value, decimals))
-    } else if (middle - value).abs() <= 0.2 * half || half == 0.0 {
+    } else if (middle - value).abs() <= 0.15 * half || half == 0.0 {
         format!("{} ± {}", fixed(value, decimals), fixed(half, decimals))
     } else {
         format!(

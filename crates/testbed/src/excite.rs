@@ -10,7 +10,7 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use arm::{Arm, JointKind};
-use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
+use diagnosis::{Excitation, ExcitationError, ExcitationOptions, HIGHEST_FREQUENCY, JointUse, Quality};
 use effects::Quantity;
 use recording::Recording;
 use report::terminal::{fitted, table, wrapped};
@@ -23,6 +23,8 @@ use crate::scenario::written;
 use crate::written::Written;
 use study::robot::{RobotFile, named_robot};
 
+/// The deviations of one sine per joint, relative to the proposed motion, below which a note says so.
+const CLEARLY_BETTER: f64 = 0.95;
 /// A revolute joint that moves by less hardly moves (rad).
 const LEAST_RANGE: f64 = 0.05;
 /// The first line of a file with references is shorter (bytes).
@@ -270,6 +272,14 @@ fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
                 _ => format!("{} move by", words::list(&names)),
             },
             numbers::trimmed(LEAST_RANGE)
+        ));
+    }
+    if let Some(naive) = found.naive.as_ref().filter(|naive| naive.deviation < CLEARLY_BETTER) {
+        list.push(format!(
+            "Note: one sine per joint, as fast as the limits allow, has smaller deviations in the mean ({}), because the frequencies of \
+             the proposed motion end at {} Hz.",
+            numbers::fixed(naive.deviation, 2),
+            numbers::trimmed(HIGHEST_FREQUENCY)
         ));
     }
     if found.quality.condition > WORST_CONDITION {

@@ -2,16 +2,19 @@
 
 use std::collections::BTreeMap;
 
+use effects::arm::Payload;
 use effects::{Detectability, Effect, Kind};
 use rayon::prelude::*;
 
 use crate::data::Data;
+use crate::regression::fit::Products;
 use crate::report::NotObservable;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_beyond_physics;
+use crate::search::problem::Selection;
 use crate::selection::FinalFit;
 use crate::selection::of_noise::noise;
-use crate::thresholds::{BEYOND, HIDDEN, SURELY_SEEN};
+use crate::thresholds::{BEYOND, FEW_JOINTS, HIDDEN, SURELY_SEEN};
 
 /// Why an effect is not testable whose torque others resemble.
 const EXPLAINED: &str = "the effects found explain the same torque in these motions";
@@ -113,6 +116,7 @@ pub fn not_testable(last: &FinalFit) -> Vec<NotObservable> {
 /// The effects on the whole arm whose torque wrong links, or the findings, resemble: a tool, a tilted base, a common factor.
 fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
     let (study, selected) = (&last.study, &last.judged.named);
+    let backgrounds = study.with_stronger_links(selected);
     let mut list = Vec::new();
     for kind in in_turn() {
         let Detectability::OfArm { columns } = kind.spec().detectability else {
@@ -135,8 +139,13 @@ fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
             .map(|form| needed(last, form))
             .fold(f64::INFINITY, f64::min);
         let least = |&column: &usize| {
-            let evidence = last.products.evidence_of(&study.table, &selected.fit, column);
-            let size = (needed / evidence.max(1e-300)).sqrt();
+            // Links that are wrong by more would explain a part of it, and cost evidence themselves.
+            let beside = |(products, other): &(Products, Selection)| {
+                let evidence = products.evidence_of(&study.table, &other.fit, column);
+                let cost = other.score - selected.score;
+                ((needed - cost).max(0.0) / evidence.max(1e-300)).sqrt()
+            };
+            let size = backgrounds.iter().map(beside).fold(0.0, f64::max);
             let share = |joint| study.data.share(joint, size * spread(last, joint, column));
             (size, (0..study.data.motions.dof).map(share).fold(0.0, f64::max), column)
         };
@@ -148,7 +157,12 @@ fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
             continue;
         }
         let (table, arm) = (&study.table, &study.data.arm);
-        let is_beyond = share > BEYOND || is_beyond_physics(size, column, candidate, table, &selected.fit, arm);
+        // A payload that the last joints do not feel is a part of a link, and one on a short arm is a part of all links.
+        let is_payload = forms.iter().any(|form| form.hypothesis.is(&Payload));
+        let may_be_links = study.data.arm.dof() <= FEW_JOINTS || !study.are_felt_at_the_end(&[column], &[1.0]);
+        let is_beyond = share > BEYOND
+            || is_payload && may_be_links && study.stated.links != Some(0.0)
+            || is_beyond_physics(size, column, candidate, table, &selected.fit, arm);
         list.push(NotObservable {
             effect: kind.spec().name,
             joint: None,

@@ -136,7 +136,7 @@ pub const OF_THE_UNEXPLAINED: f64 = 0.25;
 pub const FALLS_TO: f64 = 0.8;
 /// The shortest lag of all torques that is removed (s). Source: recordings of ten robots and simulated cases without such a lag, in which
 /// the joints agree on 1.6 ms at most.
-pub const LEAST_LAG: f64 = 0.003;
+pub const LEAST_LAG: f64 = 0.002;
 /// The number of joints whose own lags must be clear, because the lag of one or two joints may be a delay of their drives.
 pub const LEAST_LAGGING: usize = 3;
 /// A joint's lag is clear if it is this multiple of its standard deviation.

@@ -70,6 +70,21 @@ impl Study {
         (products, next)
     }
 
+    /// `selected` beside the present background, and beside those in which all links may differ from the URDF by more.
+    pub fn with_stronger_links(&self, selected: &Selection) -> Vec<(Products, Selection)> {
+        let at_least = |least: f64| Strengths {
+            links: self.strengths.links.iter().map(|&rho| rho.max(least)).collect(),
+            ..self.strengths.clone()
+        };
+        let stronger = LINK_STRENGTHS.into_iter().filter(|&rho| rho > self.strengths.common());
+        let all = stronger.map(at_least).filter(|strengths| self.stated.allows(strengths));
+        [self.strengths.clone()]
+            .into_iter()
+            .chain(all)
+            .map(|strengths| self.beside(selected, &strengths))
+            .collect()
+    }
+
     /// The best strengths of a background without the other members of `set`, among those that are stronger somewhere than the
     /// present ones: alternatives of an effect that may be a part of the background. Each has its link and its fit.
     pub fn in_the_background(&self, set: &[usize], near: &Selection) -> Vec<(Option<usize>, Selection)> {
