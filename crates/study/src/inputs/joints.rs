@@ -158,7 +158,8 @@ pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> Reg
     recording
 }
 
-/// The places of the joints `known` among `found`, if each is there in another spelling: with a prefix, other case or other separators.
+/// The places of the joints `known` among `found`, if each is there in another spelling: in a namespace, in other case, with other
+/// separators, or with one more word before or after it, which is the same for all joints.
 fn in_another_spelling(found: &[String], known: &[String]) -> Option<Vec<usize>> {
     let plain = |name: &String| -> String {
         let last = name.rsplit(['/', ':']).next().unwrap_or_default();
@@ -167,13 +168,30 @@ fn in_another_spelling(found: &[String], known: &[String]) -> Option<Vec<usize>>
             .flat_map(char::to_lowercase)
             .collect()
     };
-    let place = |joint: &String| -> Option<usize> {
-        let same = |(_, other): &(usize, &String)| plain(other) == plain(joint);
-        let mut places = found.iter().enumerate().filter(same);
-        let (first, _) = places.next()?;
-        places.next().is_none().then_some(first)
+    let [found, known] = [found, known].map(|names| names.iter().map(plain).collect::<Vec<String>>());
+    // What one name has more than the other.
+    let more: [fn(&str, &str) -> Option<String>; 4] = [
+        |found, known| found.strip_suffix(known).map(str::to_owned),
+        |found, known| found.strip_prefix(known).map(str::to_owned),
+        |found, known| known.strip_suffix(found).map(str::to_owned),
+        |found, known| known.strip_prefix(found).map(str::to_owned),
+    ];
+    let places = |more: fn(&str, &str) -> Option<String>, word: &str| -> Option<Vec<usize>> {
+        let place = |joint: &String| {
+            let is_same = |(_, other): &(usize, &String)| more(other, joint).as_deref() == Some(word);
+            let mut places = found.iter().enumerate().filter(is_same);
+            let (first, _) = places.next()?;
+            places.next().is_none().then_some(first)
+        };
+        known.iter().map(place).collect()
     };
-    known.iter().map(place).collect()
+    let first = known.first()?;
+    more.into_iter().find_map(|more| {
+        let words = found.iter().filter_map(|other| more(other, first));
+        // A digit more is another number.
+        let mut words = words.filter(|word| word.is_empty() || word.chars().any(char::is_alphabetic));
+        words.find_map(|word| places(more, &word))
+    })
 }
 
 /// A column map of the first numbered joints, with the names `known`.
@@ -214,6 +232,9 @@ mod tests {
             ["Joint2", "Joint1"],
             ["arm/joint2", "arm/joint1"],
             ["JOINT-2", "joint 1"],
+            ["left_joint_2", "left_joint_1"],
+            ["joint_2_left", "joint_1_left"],
+            ["2", "1"],
         ] {
             assert_eq!(
                 in_another_spelling(&names(&found), &known),
@@ -227,5 +248,11 @@ mod tests {
             None
         );
         assert_eq!(in_another_spelling(&names(&["Joint1"]), &known), None);
+        // Another word for each joint, and another number.
+        assert_eq!(
+            in_another_spelling(&names(&["left_joint_1", "right_joint_2"]), &known),
+            None
+        );
+        assert_eq!(in_another_spelling(&names(&["joint_11", "joint_21"]), &known), None);
     }
 }
