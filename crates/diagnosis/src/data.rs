@@ -112,14 +112,20 @@ impl Data {
         exchange(&mut motions);
         let without = channels::without_torque(inputs, &motions, &rigid, &scales, by_model);
         exchange(&mut motions);
-        let names = |joints: &[usize]| joints.iter().map(|&joint| arm.joints()[joint].name.clone()).collect();
+        let names = |joints: &[usize]| -> Vec<String> {
+            joints.iter().map(|&joint| arm.joints()[joint].name.clone()).collect()
+        };
         let mut not_diagnosed: Vec<NotDiagnosed> = Vec::new();
         for (joint, why) in without {
             scales.torque[joint] = 0.0;
-            not_diagnosed.push(NotDiagnosed {
-                joints: names(&[joint]),
-                because: why.clause(),
-            });
+            let because = why.clause();
+            match not_diagnosed.iter_mut().find(|group| group.because == because) {
+                Some(group) => group.joints.extend(names(&[joint])),
+                None => not_diagnosed.push(NotDiagnosed {
+                    joints: names(&[joint]),
+                    because,
+                }),
+            }
         }
         let weightless = if by_model {
             gravity::without(&motions, &rigid, &scales, arm.gravity())

@@ -37,8 +37,8 @@ const COARSE: f64 = 25.0;
 const STARTS: usize = 3;
 /// The longest period (s); a longer motion repeats its period.
 const LONGEST_PERIOD: f64 = 37.5;
-/// The highest frequency of a proposed motion (Hz).
-pub const HIGHEST_FREQUENCY: f64 = 0.8;
+/// The highest frequency of a motion (Hz), within the numbers of harmonics.
+const HIGHEST: f64 = 0.8;
 /// The fewest and the most harmonics of a period.
 const HARMONICS: (usize, usize) = (5, 20);
 /// The number of times that a motion is scaled down to bring it within the limits before the search fails.
@@ -139,7 +139,7 @@ pub fn excite(
     let allowed = Allowed::new(arm, limits)?;
     let repeats = (options.duration / LONGEST_PERIOD).ceil().max(1.0);
     let period = options.duration / repeats;
-    let harmonics = ((HIGHEST_FREQUENCY * period) as usize).clamp(HARMONICS.0, HARMONICS.1);
+    let harmonics = ((HIGHEST * period) as usize).clamp(HARMONICS.0, HARMONICS.1);
     let series = Series::new(&allowed, harmonics, period);
     let base = Base::new(arm, &allowed);
     let criterion = Criterion::new(arm, &base, &allowed, &series);

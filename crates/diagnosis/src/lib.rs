@@ -49,8 +49,7 @@ pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
 pub use error::DiagnosisError;
 pub use excitation::{
-    Determined, Excitation, ExcitationError, ExcitationOptions, HIGHEST_FREQUENCY, JointUse, MotionLimits, Quality,
-    excite, quality_of,
+    Determined, Excitation, ExcitationError, ExcitationOptions, JointUse, MotionLimits, Quality, excite, quality_of,
 };
 pub use findings::sentences::{Written, described, is_undetermined};
 pub use options::{Options, Step, Wanted};

@@ -104,7 +104,7 @@ pub fn propose(
     };
     let effects: Vec<Effect> = known.iter().cloned().chain(conclusion.effects()).collect();
     let limits = Limits::new(&last.study.data, (arm, &effects), unexplained.is_empty())?;
-    let sure = if last.study.strengths.is_none() {
+    let sure = if !last.products.has_background() {
         SURELY_RESOLVED
     } else {
         SURELY_RESOLVED_BESIDE
@@ -259,6 +259,7 @@ fn confusions(
                         joint: finding.joint.clone(),
                     },
                     rival.clone(),
+                    study.data.arm.joints().last().map(|joint| &*joint.name),
                 ));
                 continue;
             }

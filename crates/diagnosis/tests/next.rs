@@ -100,9 +100,15 @@ fn a_motion_is_predicted_beside_links_that_are_all_wrong() {
     assert!(!diagnosis.report.inertials.is_empty(), "no link is wrong");
     assert!(is_confused(&diagnosis, "viscous_friction", "quadratic_drag"));
     let next = diagnosis.report.next_experiment.expect("it was asked for");
-    // Without the background, no pair was predicted.
-    let is_predicted = |pair: &diagnosis::NotSeparated| pair.kind != Obstacle::NoPrediction;
-    let is_any_predicted = !next.separates.is_empty() || next.not_separated.iter().any(is_predicted);
+    // Without the background, no such pair was predicted.
+    let is_drag = |pair: &&diagnosis::NotSeparated| pair.rival.effect == "quadratic_drag";
+    let predicted = [Obstacle::OutOfReach, Obstacle::AnotherMotion, Obstacle::SameTorque];
+    let is_any_predicted = next.separates.iter().any(|pair| pair.rival.effect == "quadratic_drag")
+        || next
+            .not_separated
+            .iter()
+            .filter(is_drag)
+            .any(|pair| predicted.contains(&pair.kind));
     assert!(is_any_predicted, "{next:#?}");
     for seen in &next.shows {
         let is_an_angle = seen.effect == "encoder_offset";

@@ -157,6 +157,19 @@ def test_units_come_first(recordings, tmp_path):
     assert mended.doubts == () and {effect.name for effect in mended.effects} >= {"viscous_friction"}
 
 
+def test_a_joint_without_a_torque_is_not_diagnosed(recordings):
+    def dead(recording):
+        tau = recording["tau"].copy()
+        tau[:, -1] = 0.3
+        return {**recording, "tau": tau}
+
+    train, held_out = map(dead, recordings)
+    result = jointwise.diagnose(ARM, train=[train], held_out=[held_out], torques_only=True)
+    [group] = result.not_diagnosed
+    assert group.joints[0] not in result.joints and "almost constant" in group.because
+    assert str(result).startswith(f"{group.joints[0]} was not diagnosed")
+
+
 def test_doubtful_recordings_are_warned_of(recordings):
     train, _ = recordings
     # Above the effort limit of the URDF, 200 N m.

@@ -36,11 +36,10 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
         blocks.push(Block::Heading("Recordings that contradict the URDF"));
         blocks.extend(doubted(&report.warnings, Certainty::Possible, report));
     }
+    blocks.extend(not_diagnosed::reasons(report, code).into_iter().map(text));
     for reason in &report.not_enough_data {
         blocks.push(text(format!("Not enough data: {reason}.")));
     }
-    let reasons = not_diagnosed::reasons(report);
-    blocks.extend(reasons.into_iter().map(|reason| text(format!("{reason}."))));
     blocks.extend(findings(report));
     blocks.extend(unexplained(report, arm));
     blocks.extend(errors(report, arm));

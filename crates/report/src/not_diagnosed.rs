@@ -11,12 +11,13 @@ pub fn has(report: &Report, joint: &str) -> bool {
     joints.any(|name| name == joint)
 }
 
-/// The reasons, one sentence or a few for each group of joints, with the remedy.
-pub fn reasons(report: &Report) -> Vec<String> {
+/// The reasons, one sentence or a few for each group of joints, with the remedy; `named` writes the name of a joint.
+pub fn reasons(report: &Report, named: impl Fn(&str) -> String) -> Vec<String> {
     let groups = report.not_diagnosed.iter();
     let reason = |group: &NotDiagnosed| {
         let are = if group.joints.len() == 1 { "is" } else { "are" };
-        format!("{} {are} not diagnosed: {}", list(&group.joints), group.because)
+        let names: Vec<String> = group.joints.iter().map(|joint| named(joint)).collect();
+        format!("{} {are} not diagnosed: {}.", list(&names), group.because)
     };
     groups.map(reason).collect()
 }
@@ -35,6 +36,6 @@ pub fn before_verdict(report: &Report) -> Option<String> {
             few if few <= NAMED_JOINTS => (list(&joints), "were"),
             many => (format!("{many} joints"), "were"),
         };
-        format!("{names} {were} not diagnosed; what follows is about the other joints.")
+        format!("{names} {were} not diagnosed; everything else is about the other joints.")
     })
 }

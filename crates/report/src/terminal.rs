@@ -104,7 +104,7 @@ fn opening(report: &Report) -> String {
         text.push('\n');
     }
     text += &wrapped(&words::verdict(report), "");
-    for reason in not_diagnosed::reasons(report) {
+    for reason in not_diagnosed::reasons(report, str::to_owned) {
         text += &wrapped(&reason, "- ");
     }
     for group in doubts::groups(&report.doubts, Certainty::Certain, report) {
@@ -138,7 +138,7 @@ pub fn prose(report: &Report) -> String {
             open.next
         );
     }
-    for reason in not_diagnosed::reasons(report) {
+    for reason in not_diagnosed::reasons(report, str::to_owned) {
         let _ = writeln!(text, "- {reason}");
     }
     for reason in &report.not_enough_data {

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use arm::{Arm, JointKind};
-use diagnosis::{Excitation, ExcitationError, ExcitationOptions, HIGHEST_FREQUENCY, JointUse, Quality};
+use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
 use effects::Quantity;
 use recording::Recording;
 use report::terminal::{fitted, table, wrapped};
@@ -255,7 +255,7 @@ fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String
     text
 }
 
-/// What makes the motion useless for an identification, in sentences.
+/// What makes the motion useless for an identification, or another one better, in sentences.
 fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
     let mut list = Vec::new();
     let hardly = |(joint, needed): &(&arm::Joint, &JointUse)| {
@@ -279,7 +279,7 @@ fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
             "Note: one sine per joint, as fast as the limits allow, has smaller deviations in the mean ({}), because the frequencies of \
              the proposed motion end at {} Hz.",
             numbers::fixed(naive.deviation, 2),
-            numbers::trimmed(HIGHEST_FREQUENCY)
+            numbers::fixed(found.harmonics as f64 / found.period, 2)
         ));
     }
     if found.quality.condition > WORST_CONDITION {

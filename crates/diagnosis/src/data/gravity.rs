@@ -6,10 +6,12 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{deviation, mean_square};
-use crate::thresholds::{GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, LEAST_INERTIA, NO_GRAVITY, SOME_GRAVITY};
+use crate::thresholds::{
+    GRAVITY_RIDGE, LEAST_CHANNEL_ROWS, LEAST_GRAVITY, LEAST_INERTIA, NO_GRAVITY, SHOWS_GRAVITY, SOME_GRAVITY,
+};
 
-/// The joints that need torque against gravity, if the measured torques of none of them contain any: the controller reports them without
-/// what it adds against gravity, or counterweights carry the weight. Gravity in another direction than the model's is gravity.
+/// The joints that need torque against gravity and show none, if those that carry much weight show none: the controller reports the torques
+/// without what it adds against gravity, or counterweights carry the weight. Gravity in another direction than the model's is gravity.
 pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vector3<f64>) -> Vec<usize> {
     let joints = (0..motions.dof).filter(|&joint| scales.torque[joint] > 0.0);
     let found: Vec<(usize, Shown)> = joints
@@ -18,9 +20,11 @@ pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Ve
     let loaded = || found.iter().filter(|(_, shown)| shown.weight >= LEAST_GRAVITY);
     let lacks = |shown: &Shown| shown.gravity < NO_GRAVITY && shown.motion > LEAST_INERTIA;
     let is_without = loaded().count() > 1 && loaded().all(|(_, shown)| lacks(shown));
-    // The controller that subtracts gravity does so on every joint, also where it is small.
-    let has_weight = |(joint, shown): &(usize, Shown)| (shown.weight >= SOME_GRAVITY).then_some(*joint);
-    found.iter().filter(|_| is_without).filter_map(has_weight).collect()
+    // A controller that subtracts gravity does so on every joint, also where it is small. Counterweights carry the first links only, and
+    // the torque of the others shows gravity.
+    let has_none = |shown: &Shown| shown.weight >= SOME_GRAVITY && shown.gravity < SHOWS_GRAVITY;
+    let without = found.iter().filter(|(_, shown)| is_without && has_none(shown));
+    without.map(|(joint, _)| *joint).collect()
 }
 
 /// Why these joints are not diagnosed.

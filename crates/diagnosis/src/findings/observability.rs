@@ -77,8 +77,19 @@ pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: 
     } else {
         least
     };
+    let is_beyond = is_beyond || is_beyond_a_factor(candidate, size);
     let size = Some(size).filter(|size| !is_beyond && size.is_finite());
     Some(Least { share, size })
+}
+
+/// Whether the main parameter of `candidate` is a factor, and `size` so far from one that the factor may be zero.
+fn is_beyond_a_factor(candidate: &Candidate, size: f64) -> bool {
+    let spec = candidate.hypothesis.spec();
+    let main = spec
+        .parameters
+        .iter()
+        .find(|parameter| spec.main.first() == Some(&parameter.key));
+    main.is_some_and(|main| main.neutral == 1.0) && size >= 1.0
 }
 
 /// The effects that are not testable in addition to those of the final fit.
@@ -95,7 +106,10 @@ pub fn not_testable(last: &FinalFit) -> Vec<NotObservable> {
             continue;
         }
         // A channel without torque has no scale.
-        let because = if data.scales.torque[joint] == 0.0 {
+        let name = &data.arm.joints()[joint].name;
+        let because = if data.not_diagnosed.iter().any(|group| group.joints.contains(name)) {
+            "the joint is not diagnosed"
+        } else if data.scales.torque[joint] == 0.0 {
             "the recordings hold no torque of the joint"
         } else {
             "the joint does not move in the training recordings"
@@ -161,6 +175,7 @@ fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
         let is_payload = forms.iter().any(|form| form.hypothesis.is(&Payload));
         let may_be_links = study.data.arm.dof() <= FEW_JOINTS || !study.are_felt_at_the_end(&[column], &[1.0]);
         let is_beyond = share > BEYOND
+            || is_beyond_a_factor(candidate, size)
             || is_payload && may_be_links && study.stated.links != Some(0.0)
             || is_beyond_physics(size, column, candidate, table, &selected.fit, arm);
         list.push(NotObservable {
@@ -224,16 +239,16 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
                     })
                     .collect();
                 sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
-                if let Some(unnamed) = sizes.iter().position(|&(size, _)| !may_be_named(size)) {
-                    // Nothing is named above the last size, so that no effect is detectable from there.
-                    sizes.truncate(unnamed.saturating_sub(1));
-                }
                 if is_seen_below {
                     // The largest detectable size for which all smaller ones are detectable.
                     let last = sizes.iter().take_while(|(_, seen)| *seen).last();
                     let because = if last.is_none() { if_none } else { because };
                     add(because, None, last.map(|&(size, _)| size));
                 } else {
+                    if let Some(unnamed) = sizes.iter().position(|&(size, _)| !may_be_named(size)) {
+                        // The last size that is named is no size from which on an effect is named.
+                        sizes.truncate(unnamed.saturating_sub(1));
+                    }
                     let least = sizes.iter().rev().take_while(|(_, seen)| *seen).last();
                     let because = if least.is_none() { if_none } else { because };
                     add(because, least.map(|&(size, _)| size), None);

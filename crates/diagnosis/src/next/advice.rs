@@ -60,14 +60,13 @@ pub fn not_separated(
     }
 }
 
-/// The confusion of `finding` with `rival`, for which no motion is predicted.
-pub fn unpredicted(finding: Confusable, rival: Confusable) -> NotSeparated {
-    // A payload is a change of the last link, and a link that is wrong by a factor is a link that is wrong.
-    let is_same_body = rival.joint.is_some()
-        && (finding.effect == Payload.spec().name
-            || finding.effect == LinkInertialError.spec().name && finding.joint == rival.joint);
-    let (kind, because) = if is_same_body {
-        let because = "they are the same change of one link, with the same torque in every motion".to_owned();
+/// The confusion of `finding` with `rival`, for which no motion is predicted. `last` is the last joint of the arm.
+pub fn unpredicted(finding: Confusable, rival: Confusable, last: Option<&str>) -> NotSeparated {
+    // A payload is a change of the last link, and a link that is wrong by a factor is a special case of a link that is wrong.
+    let is_of_last = finding.effect == Payload.spec().name && rival.joint.as_deref() == last;
+    let is_special = finding.effect == LinkInertialError.spec().name && finding.joint == rival.joint;
+    let (kind, because) = if rival.joint.is_some() && (is_of_last || is_special) {
+        let because = "the alternative contains the finding, with the same torque in every motion".to_owned();
         (Obstacle::SameTorque, because)
     } else {
         let of = match &rival.joint {

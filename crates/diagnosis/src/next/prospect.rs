@@ -144,7 +144,7 @@ impl<'a> Prospect<'a> {
             changed_at: None,
             dof,
             chunks: vec![chunk],
-            sources: vec![source],
+            sources: data.motions.sources.iter().cloned().chain([source]).collect(),
             cutoff: data.motions.cutoff,
             tempo: tempo.clone(),
             one_clock: data.motions.one_clock,
@@ -160,7 +160,8 @@ impl<'a> Prospect<'a> {
             &self.about.carried,
             Moving::ThroughReversals,
         );
-        let new = Products::new(&table, |_| true, &[seconds], &tempo, &data.floor);
+        let seconds_of_all: Vec<f64> = data.seconds.iter().copied().chain([seconds]).collect();
+        let new = Products::new(&table, |_| true, &seconds_of_all, &tempo, &data.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
         // The residual of the motion is predicted to be as large as that of the recordings.
         let variance: Vec<f64> = (0..dof)
@@ -196,7 +197,8 @@ impl<'a> Prospect<'a> {
             qdd: zeros(),
             tau: zeros(),
             known: Vec::new(),
-            recording: 0,
+            // The own friction of another recording is not that of the motion.
+            recording: self.last.study.data.motions.sources.len(),
             period,
             kernel,
             stride,

@@ -71,21 +71,21 @@ pub fn beside(study: &Study, selected: &Selection, member: usize) -> Vec<usize> 
     set
 }
 
-/// The equivalent name of `member`, if there is one: a constant torque beside larger dry friction equals friction that depends on
-/// the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
+/// The equivalent name of `member`, if there is one: a constant torque beside dry friction that is not much smaller equals friction that
+/// depends on the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
 pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) -> Option<Rival> {
     let finding = &study.candidates[member];
     if finding.hypothesis.is(&FrictionAsymmetry) {
         return Some((Hypothesis::of(&TorqueOffset), finding.joint));
     }
     let constant = *finding.columns.first()?;
-    let is_larger_friction = |&c: &usize| {
+    let is_as_large = |&c: &usize| {
         let other = &study.candidates[c];
         other.hypothesis.is(&CoulombFriction)
             && other.joint == finding.joint
             && selected.fit.coefficient(other.columns[0]) > LEAST_LEVEL * selected.fit.coefficient(constant).abs()
     };
-    let has_alias = finding.hypothesis.is(&TorqueOffset) && set.iter().any(is_larger_friction);
+    let has_alias = finding.hypothesis.is(&TorqueOffset) && set.iter().any(is_as_large);
     has_alias.then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
 }
 

@@ -159,8 +159,10 @@ pub const LEAST_GRAVITY: f64 = 0.3;
 /// where it is up to 0.05, and ten real robots with it.
 pub const NO_GRAVITY: f64 = 0.15;
 /// The part of the model's torque that is gravity's (standard deviations) from which a joint is not diagnosed if the torques of those that
-/// carry much weight contain no gravity. Source: choice; the parts of joints are near zero, or above it.
+/// carry much weight contain no gravity. Source: choice; a smaller part hardly changes a diagnosis.
 pub const SOME_GRAVITY: f64 = 0.03;
+/// The gravity that the measured torque of such a joint shows over the model's, from which it is diagnosed nevertheless. Source: choice.
+pub const SHOWS_GRAVITY: f64 = 0.5;
 /// The inertia that such torques show at least over the model's: a torque in another unit shows little of both. Source: choice.
 pub const LEAST_INERTIA: f64 = 0.5;
 /// The ridge of that regression, over the mean square of each column.

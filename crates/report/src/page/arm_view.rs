@@ -272,7 +272,12 @@ fn labels(
             };
         }
         if not_diagnosed::has(report, &joint.name) {
-            below = "not diagnosed".into();
+            // A second encoder may show an effect where the torque shows none.
+            below = if below.is_empty() {
+                "not diagnosed".into()
+            } else {
+                format!("not diagnosed, {below}")
+            };
         }
         let name = match error {
             Some(error) => format!(

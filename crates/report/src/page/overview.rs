@@ -83,8 +83,8 @@ impl Page<'_> {
 
     /// The joints that are not diagnosed, with the reasons.
     pub(super) fn not_diagnosed(&self) -> Option<Section> {
-        let reasons = not_diagnosed::reasons(self.report);
-        let body = html! { ul.steps { @for reason in &reasons { li { (reason) "." } } } };
+        let reasons = not_diagnosed::reasons(self.report, str::to_owned);
+        let body = html! { ul.steps { @for reason in &reasons { li { (reason) } } } };
         (!reasons.is_empty()).then(|| Section::new("not-diagnosed", html! { "Not diagnosed" }, body))
     }
 

@@ -123,26 +123,32 @@ fn a_payload_of_negative_mass_is_a_tool_that_is_not_mounted() {
 fn joints_that_are_not_diagnosed_come_first() {
     let (mut report, traces, arm) = made_up::diagnosis(7, Plot::Clean);
     let joint = arm.joints()[2].name.clone();
+    let strip = format!("Joint 3 · {joint}</h3>");
+    let before = report::page(&report, &traces, &arm);
+    assert!(
+        before.contains(&strip),
+        "the residual of a joint without findings is drawn"
+    );
     report.fit.remove(&joint);
     report.not_diagnosed.push(NotDiagnosed {
         joints: vec![joint.clone()],
         because: "the measured torque is almost constant".to_owned(),
     });
-    let first = format!("{joint} was not diagnosed; what follows is about the other joints.");
-    let reason = format!("{joint} is not diagnosed: the measured torque is almost constant");
+    let first = format!("{joint} was not diagnosed; everything else is about the other joints.");
+    let reason = format!("{joint} is not diagnosed: the measured torque is almost constant.");
     let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for text in [terminal::diagnosis(&report), terminal::complete(&report, &arm)] {
         let text = joined(&text);
         assert!(text.starts_with(&first) && text.contains(&reason), "{text}");
     }
     let markdown = report::diagnosis_markdown(&report, &arm);
+    let coded = reason.replacen(&joint, &format!("`{joint}`"), 1);
     assert!(
-        markdown.contains(&format!("**{first}")) && markdown.contains(&reason),
+        markdown.contains(&format!("**{first}")) && markdown.contains(&coded),
         "{markdown}"
     );
     let page = report::page(&report, &traces, &arm);
     assert!(page.contains(&format!("<h1>{first}")) && page.contains(&reason));
-    let strip = format!("Joint 3 · {joint}</h3>");
     assert!(!page.contains(&strip), "its residual is no error of the model");
 }
 
