@@ -13,9 +13,7 @@ use torque::Reference;
 
 use crate::findings::conclusion::Conclusion;
 use crate::findings::observability;
-use crate::report::{
-    Confusable, Finding, NextExperiment, NotObservable, NotSeparated, Obstacle, Separation, Shows, Unexplained,
-};
+use crate::report::{Confusable, Finding, NextExperiment, NotObservable, NotSeparated, Separation, Shows, Unexplained};
 use crate::selection::{FinalFit, rivals};
 use crate::thresholds::{COUNTED, MORE_DETECTABLE, SURELY_RESOLVED, SURELY_RESOLVED_BESIDE, WEIGHT_OF_SIZES};
 
@@ -104,11 +102,7 @@ pub fn propose(
     };
     let effects: Vec<Effect> = known.iter().cloned().chain(conclusion.effects()).collect();
     let limits = Limits::new(&last.study.data, (arm, &effects), unexplained.is_empty())?;
-    let sure = if !last.products.has_background() {
-        SURELY_RESOLVED
-    } else {
-        SURELY_RESOLVED_BESIDE
-    };
+    let has_background = last.products.has_background();
     let now = prospect.now();
     let before: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&now, &c.pair)).collect();
     let attempt = |design: Design| -> Option<Tried> {
@@ -134,7 +128,7 @@ pub fn propose(
         let (design, parts) = (list[best].design.clone(), list[best].parts);
         match design.surely_within(&limits, parts) {
             Some((_, within)) if within == parts => {
-                let mut next = described(sure, &limits, &confusions, &hidden, &before, &list, best);
+                let mut next = described(has_background, &limits, &confusions, &hidden, &before, &list, best);
                 next.report.not_separated.extend(unpredicted);
                 return Ok(next);
             }
@@ -326,9 +320,9 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
     hidden.iter().filter_map(of).collect()
 }
 
-/// The next experiment with the motion `best` of `list`. A pair is promised from `sure` times the evidence that distinguishes it.
+/// The next experiment with the motion `best` of `list`. Beside a background, more evidence is needed for a promise.
 fn described(
-    sure: f64,
+    has_background: bool,
     limits: &Limits,
     confusions: &[Confusion],
     hidden: &[Hidden<'_>],
@@ -337,16 +331,20 @@ fn described(
     best: usize,
 ) -> Next {
     let selected = &list[best];
+    let sure = if has_background {
+        SURELY_RESOLVED_BESIDE
+    } else {
+        SURELY_RESOLVED
+    };
     let (mut separates, mut not_separated) = (Vec::new(), Vec::new());
     for (k, confusion) in confusions.iter().enumerate() {
         let [after, needed] = selected.separations[k];
         let (finding, rival) = (confusion.finding.clone(), confusion.rival.clone());
-        let barred = if !confusion.is_explained {
-            Some(Obstacle::Unexplained)
-        } else {
-            // A pair that the recordings already distinguish reliably is not a confusion.
-            (before[k][0] >= SURELY_RESOLVED * before[k][1].min(needed)).then_some(Obstacle::NoPrediction)
-        };
+        let barred = advice::barred(
+            confusion.is_explained,
+            has_background && advice::resembles_links(rival.effect),
+            before[k][0] >= SURELY_RESOLVED * before[k][1].min(needed),
+        );
         if after >= sure * needed && barred.is_none() {
             separates.push(Separation {
                 finding,

@@ -67,8 +67,9 @@ pub enum Obstacle {
     AnotherMotion,
     /// The joint has an unexplained residual, so that the outcome of a motion cannot be predicted.
     Unexplained,
-    /// No outcome is predicted: the alternative is a correction of a link's inertial parameters, or of all, or the prediction fails on the
-    /// present recordings, because it states that they already distinguish the two.
+    /// No outcome is predicted: the alternative is a correction of the inertial parameters of a link or of all links, or multiplies masses or
+    /// torques beside such corrections, or the prediction fails on the present recordings, because it states that they already
+    /// distinguish the two.
     #[serde(rename = "not_foretold")]
     NoPrediction,
 }
