@@ -58,11 +58,11 @@ fn a_channel_of_rounding_beside_a_link_without_mass_is_left_out() {
             );
         }
         assert!(effects_on(&diagnosis, "elbow").is_empty(), "{size}: {diagnosis:?}");
-        let remarks = diagnosis.remarks.join("\n");
-        assert!(
-            remarks.contains("elbow: the measured torque is almost constant"),
-            "{remarks}"
-        );
+        let [group] = &diagnosis.report.not_diagnosed[..] else {
+            panic!("{:?}", diagnosis.report.not_diagnosed);
+        };
+        assert_eq!(group.joints, ["elbow"]);
+        assert!(group.because.starts_with("the measured torque is almost constant"));
     }
 }
 
