@@ -71,13 +71,14 @@ pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: 
         least * visibility.spread / visibility.torque.max(1e-300)
     };
     let (study, fit) = (&last.study, &last.judged.named.fit);
-    let is_beyond = share > BEYOND || is_beyond_physics(least, column, candidate, &study.table, fit, &study.data.arm);
     let size = if is_of_first {
         least / fit.coefficient(candidate.columns[0]).max(0.0)
     } else {
         least
     };
-    let is_beyond = is_beyond || is_beyond_a_factor(candidate, size);
+    let is_beyond = share > BEYOND
+        || is_beyond_a_factor(candidate, size)
+        || is_beyond_physics(least, column, candidate, &study.table, fit, &study.data.arm);
     let size = Some(size).filter(|size| !is_beyond && size.is_finite());
     Some(Least { share, size })
 }

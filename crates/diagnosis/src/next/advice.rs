@@ -26,7 +26,7 @@ pub fn not_separated(
         Obstacle::AnotherMotion
     };
     let because = match kind {
-        Obstacle::SameTorque => "both give the same torque in every motion that was tried".to_owned(),
+        Obstacle::SameTorque => "no motion that was tried gives evidence for one of the two".to_owned(),
         Obstacle::OutOfReach => format!(
             "the best motion within the joint limits gives {:.1} nats of evidence, and a reliable distinction needs {sure:.1}",
             best.max(0.0)

@@ -254,6 +254,14 @@ impl Strengths {
         vec![scaled(1.0 / FINER_STRENGTH), scaled(FINER_STRENGTH)]
     }
 
+    /// These strengths, with every link's at least `rho`.
+    pub fn at_least(&self, rho: f64) -> Self {
+        Self {
+            links: self.links.iter().map(|own| own.max(rho)).collect(),
+            ..self.clone()
+        }
+    }
+
     /// These strengths with less of one part, except for the constant torques, which no other effect replaces.
     pub fn weaker(&self) -> Vec<Self> {
         let mut list = Vec::new();

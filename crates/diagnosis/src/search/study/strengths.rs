@@ -72,12 +72,10 @@ impl Study {
 
     /// `selected` beside the present background, and beside those in which all links may differ from the URDF by more.
     pub fn with_stronger_links(&self, selected: &Selection) -> Vec<(Products, Selection)> {
-        let at_least = |least: f64| Strengths {
-            links: self.strengths.links.iter().map(|&rho| rho.max(least)).collect(),
-            ..self.strengths.clone()
-        };
         let stronger = LINK_STRENGTHS.into_iter().filter(|&rho| rho > self.strengths.common());
-        let all = stronger.map(at_least).filter(|strengths| self.stated.allows(strengths));
+        let all = stronger
+            .map(|rho| self.strengths.at_least(rho))
+            .filter(|strengths| self.stated.allows(strengths));
         [self.strengths.clone()]
             .into_iter()
             .chain(all)
@@ -134,11 +132,7 @@ impl Study {
             return None;
         }
         let at_least = |least: f64| {
-            let links: Vec<f64> = links.iter().map(|&rho| rho.max(least)).collect();
-            let strengths = Strengths {
-                links,
-                ..self.strengths.clone()
-            };
+            let strengths = self.strengths.at_least(least);
             let (_, next) = self.beside(selected, &strengths);
             (strengths, next)
         };
