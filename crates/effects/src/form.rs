@@ -18,7 +18,7 @@ pub struct Grounds<'a> {
     pub times: &'a [(f64, f64)],
     /// The mean inertia that each joint moves alone (kg m² or kg).
     pub mass: &'a [f64],
-    /// The largest measured torque of each joint (N m or N).
+    /// The largest measured torque of each joint in the training recordings (N m or N).
     pub largest: &'a [f64],
     /// The torque that each joint needs by the model, without the largest 0.1 % (N m or N).
     pub needed: &'a [f64],

@@ -128,6 +128,9 @@ def test_errors_say_where_what_and_how(recordings, tmp_path):
     assert "train[0] has no \"tau\"" in refusal(ARM, train={"t": train["t"], "q": train["q"]})
     assert "no quantity" in refusal(ARM, train={**train, "torque": train["tau"]})
     assert "train[0]" in refusal(ARM, train=short)
+    masked = np.ma.array(train["tau"], mask=False)
+    masked[5:9] = np.ma.masked
+    assert "row 6: column \"tau_" in refusal(ARM, train={**train, "tau": masked})
     assert "has 100 values" in refusal(ARM, train=halved)
     assert "held_out[0]: contains the same samples as train[0]" in refusal(ARM, train=train, held_out=train)
     assert "given as a training and as a held-out" in refusal(ARM, train=CASES / "friction/train_1.csv", held_out=CASES / "friction/train_1.csv")

@@ -345,8 +345,7 @@ impl fmt::Display for Warning {
             }
             Self::Gap { from, to, shift } => write!(
                 f,
-                "no rows from {from:.4} s to {to:.4} s, over which the clock is shifted by {:.0} % of a period; treated as separate segments",
-                100.0 * shift
+                "no rows from {from:.4} s to {to:.4} s, after which the samples are {shift:.2} periods off the clock of those before; treated as separate segments"
             ),
             Self::Spikes {
                 joint,

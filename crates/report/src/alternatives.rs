@@ -38,6 +38,15 @@ pub fn text(finding: &Finding) -> String {
         .join(", or ")
 }
 
+/// A finding's alternatives, with the experiment that distinguishes them from it.
+pub fn with_experiment(finding: &Finding) -> String {
+    let could_be = format!("could also be {}", text(finding));
+    match words::experiments(finding).as_str() {
+        "" => could_be,
+        experiments => format!("{could_be}; experiment that distinguishes them: {experiments}"),
+    }
+}
+
 /// Whether a finding has alternatives.
 pub fn has_any(finding: &Finding) -> bool {
     !finding.confusable_with.is_empty() || !finding.confusable_with_pairs.is_empty()

@@ -1,4 +1,4 @@
-//! A diagnosis as Markdown: verdict, findings with their parameters, errors, open questions, and the next experiment.
+//! A diagnosis as Markdown: verdict, findings with their parameters, errors, open questions, and the next steps.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     blocks.extend(errors(report, arm));
     blocks.extend(rollout(report, arm));
     blocks.extend(not_testable(report, arm));
-    blocks.extend(next_experiment(report));
+    blocks.extend(next_steps(report));
     blocks
 }
 
@@ -243,9 +243,10 @@ fn not_testable(report: &Report, arm: &Arm) -> Vec<Block> {
                 .find(|joint| Some(&joint.name) == entry.joint.as_ref());
             let kind = joint.map_or(JointKind::Revolute, |joint| joint.kind);
             let place = place(entry.joint.as_deref());
-            format!("{place} {}", words::detectable_sizes(entry, kind))
-                .trim_end()
-                .to_owned()
+            match words::detectable_sizes(entry, kind).as_str() {
+                "" => format!("{place} at no size"),
+                sizes => format!("{place} {sizes}"),
+            }
         });
         vec![
             words::wording(entries[0].effect).name.to_owned(),
@@ -260,14 +261,18 @@ fn not_testable(report: &Report, arm: &Arm) -> Vec<Block> {
     ]
 }
 
-fn next_experiment(report: &Report) -> Vec<Block> {
-    let Some(next) = &report.next_experiment else {
+fn next_steps(report: &Report) -> Vec<Block> {
+    let steps = terminal::steps::experiments(report);
+    if steps.is_empty() {
         return Vec::new();
-    };
-    let mut blocks = vec![Block::Heading("The next experiment")];
-    let sentences = next_words::sentences(next);
-    blocks.extend(sentences.iter().map(|sentence| text(words::capital(sentence) + ".")));
-    if !next.separates.is_empty() {
+    }
+    let mut blocks = vec![Block::Heading("What to do next")];
+    blocks.extend(steps.iter().map(|step| text(format!("- {step}."))));
+    if let Some(next) = report
+        .next_experiment
+        .as_ref()
+        .filter(|next| !next.separates.is_empty())
+    {
         let row = |pair: &diagnosis::Separation| {
             let [before, after, needed] = [pair.before, pair.after, pair.needed].map(numbers::short);
             let [finding, rival] = [&pair.finding, &pair.rival].map(next_words::name);

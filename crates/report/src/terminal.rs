@@ -189,7 +189,7 @@ pub fn largest(report: &Report, open: &Unexplained, arm: Option<&Arm>) -> Option
 fn details(finding: &Finding) -> String {
     let place = finding.joint.as_deref().unwrap_or("whole arm");
     let start = format!("{place}, {}", words::effect(finding));
-    let could_be = format!("could also be {}", alternatives::text(finding));
+    let could_be = alternatives::with_experiment(finding);
     let sizes = effects::spec(finding.effect).map_or(0, |spec| spec.sentence.matches('{').count());
     let has_more = sizes > 1 || finding.parameters.contains_key("onset") || !finding.corrects;
     match (has_more, !alternatives::has_any(finding)) {

@@ -1,12 +1,10 @@
 //! The parts of effects that the formats of other programs can hold: what URDF and MJCF have in common.
 
-use arm::Joint;
+use arm::{Arm, Joint, JointKind};
 use effects::drive::RotorInertia;
 use effects::friction::{CoulombFriction, FrictionAsymmetry, LoadDependentFriction, StribeckFriction, ViscousFriction};
 use effects::{Effect, InUrdf};
 use report::numbers;
-
-use crate::effect_file::unit;
 
 /// A robot in the format of another program.
 #[derive(Debug)]
@@ -90,7 +88,7 @@ pub fn friction(joint: &Joint, effects: &[Effect]) -> Option<(f64, f64)> {
 ///
 /// # Errors
 /// If an effect cannot be written.
-pub fn left_out(effects: &[Effect], held: impl Fn(&Effect) -> Held) -> anyhow::Result<Vec<String>> {
+pub fn left_out(arm: &Arm, effects: &[Effect], held: impl Fn(&Effect) -> Held) -> anyhow::Result<Vec<String>> {
     let mut lines = Vec::new();
     for effect in effects {
         let what = match held(effect) {
@@ -109,10 +107,15 @@ pub fn left_out(effects: &[Effect], held: impl Fn(&Effect) -> Held) -> anyhow::R
                 .iter()
                 .position(|parameter| parameter.key == key)
         };
+        let kind = effect
+            .joint()
+            .and_then(|name| arm.joints().iter().find(|joint| joint.name == name));
+        let kind = kind.map_or(JointKind::Revolute, |joint| joint.kind);
         let mut parameters: Vec<(&String, &toml::Value)> = table.iter().filter(is_shown).collect();
         parameters.sort_by_key(|(key, _)| place(key).unwrap_or(usize::MAX));
         let parameters = parameters.into_iter().map(|(key, value)| {
-            let unit = unit(effect, key).map_or_else(String::new, |unit| format!(" {unit}"));
+            let unit = effect.spec().unit(key, kind).filter(|unit| *unit != "1");
+            let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
             format!("{key} {}{unit}", shown(value))
         });
         let parameters: Vec<String> = parameters.collect();

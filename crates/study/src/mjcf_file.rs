@@ -33,7 +33,7 @@ pub fn mjcf(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
         .into_iter()
         .partition(|effect| effect.is(&Payload) && is_body(&Payload::inertia(effect)));
     let corrected = Corrected::new(arm, &within)?;
-    let mut omitted = held::left_out(effects, held_of)?;
+    let mut omitted = held::left_out(arm, effects, held_of)?;
     let model = Model {
         arm: corrected.arm(),
         corrected: &corrected,

@@ -35,7 +35,7 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
         let drive = effect.joint().and_then(|joint| places.drives.get(joint));
         drive.is_some_and(|drive| drive.rotor.is_none())
     };
-    let mut omitted = held::left_out(effects, |effect| match held::in_common(effect) {
+    let mut omitted = held::left_out(arm, effects, |effect| match held::in_common(effect) {
         Held::Whole if effect.is(&RotorInertia) && is_described(effect) => {
             Held::Without("the file has a transmission of this joint, which stays as it was")
         }

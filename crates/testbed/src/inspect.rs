@@ -181,11 +181,11 @@ fn shown(inspection: &FileInspection<'_>, arm: Option<&Arm>) -> String {
         "joint".to_owned(),
         format!("position\n({position})"),
         format!("speed\n({}/s)", position.replace(", ", "/s, ")),
-        "moves".to_owned(),
+        "in\nmotion".to_owned(),
         "reversals".to_owned(),
         format!("torque\n({torque})"),
-        "q step".to_owned(),
-        "qd late".to_owned(),
+        "encoder\nstep".to_owned(),
+        "velocity\ndelay".to_owned(),
     ];
     let mut table = report::terminal::table(header);
     for column in table.column_iter_mut() {

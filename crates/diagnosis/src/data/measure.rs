@@ -14,9 +14,10 @@ use crate::thresholds::{
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
 const POSES: usize = 10;
 
-/// The largest measured torque of each joint (N m or N).
+/// The largest measured torque of each joint in the training recordings (N m or N).
 pub fn largest(motions: &Motions) -> Vec<f64> {
-    let torques = |joint: usize| motions.chunks.iter().flat_map(move |chunk| &chunk.tau[joint]);
+    let fitted = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
+    let torques = |joint: usize| fitted().flat_map(move |chunk| &chunk.tau[joint]);
     (0..motions.dof)
         .map(|joint| torques(joint).fold(0.0_f64, |largest, tau| largest.max(tau.abs())))
         .collect()

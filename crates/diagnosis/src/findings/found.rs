@@ -29,7 +29,7 @@ pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
             let standing = standing(&last.study, &problem, &last.judged.named, member.candidate);
             let mut list = finding(last, &problem, member, &standing);
             if let Some(first) = list.first_mut() {
-                widen(first, last, member, &standing);
+                widen(first, last, &problem, member);
             }
             list.into_iter()
                 .map(|finding| (finding, Some(member.candidate)))

@@ -1,28 +1,28 @@
-//! The sizes of Coulomb or viscous friction where the recordings do not tell one from the other.
+//! The sizes of Coulomb or viscous friction where only one of the two is named.
 
 use effects::Term;
 
 use crate::report::{Finding, Parameter};
+use crate::search::problem::Problem;
 use crate::selection::FinalFit;
 use crate::selection::judge::Member;
-use crate::selection::rivals::Standing;
 
 /// Widens the interval of `finding`, if it is friction that every joint has, by what the other such friction of its joint would change:
 /// both are probably there, although the recordings need one only.
-pub fn widen(finding: &mut Finding, last: &FinalFit, member: &Member, standing: &Standing) {
+pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, member: &Member) {
     let study = &last.study;
     let candidate = &study.candidates[member.candidate];
     let spec = candidate.hypothesis.spec();
-    let other = standing
-        .rivals
-        .iter()
-        .find(|(hypothesis, joint)| hypothesis.spec().is_baseline && *joint == candidate.joint);
-    let (true, Some((other, joint)), [own]) = (spec.is_baseline, other, &candidate.columns[..]) else {
+    let (true, true, [own]) = (spec.is_baseline, spec.is_friction, &candidate.columns[..]) else {
         return;
     };
+    let selected = &last.judged.named.set;
     let is_other = |index: &usize| {
-        let candidate = &study.candidates[*index];
-        candidate.hypothesis == *other && candidate.joint == *joint && study.always_acts(*index)
+        let other = &study.candidates[*index];
+        let (kind, spec) = (other.hypothesis, other.hypothesis.spec());
+        let is_its_like = spec.is_baseline && spec.is_friction && kind != candidate.hypothesis;
+        let is_there = || selected.iter().any(|c| c == index || problem.exclude(*c, *index));
+        is_its_like && other.joint == candidate.joint && study.always_acts(*index) && !is_there()
     };
     let Some(other) = (0..study.candidates.len()).find(is_other) else {
         return;

@@ -107,6 +107,9 @@ const MOST_PAYLOAD: f64 = 1.5;
 /// The largest distance of a payload's centre of mass from the tool (m), as a share of the arm's reach. Source: first
 /// diagnosis.
 const PAYLOAD_REACH: f64 = 0.5;
+/// A coordinate of the centre of mass that is closer to zero has no effect on any torque, so that the fit leaves it at zero (m). No
+/// measurement is as close. Source: rounding.
+const UNSEEN: f64 = 1e-12;
 /// The share of the largest moment of inertia by which another may be negative, for rounding. Source: rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -247,6 +250,11 @@ impl EffectKind for Payload {
                 let parameters = read(draw);
                 parameters[1 + k] / parameters[0]
             });
+            // No torque depends on it, as on the height of a payload of an arm whose axes are all vertical.
+            if com[k].abs() < UNSEEN {
+                let reach = PAYLOAD_REACH * reach(estimate.arm());
+                [-reach, reach].into_iter().for_each(|end| estimate.extend(key, end));
+            }
         }
         let inertia = match places[4] {
             Some(_) => Some(body(&read(estimate.best())).tensor).filter(|tensor| exists(mass, tensor)),

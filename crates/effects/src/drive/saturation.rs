@@ -64,8 +64,11 @@ const BELOW_NEED: f64 = 0.4;
 /// joint arm_1 a limit of 3.4 N m was named beside 3.3 N m of friction.
 const LEAST_OVER_FRICTION: f64 = 1.3;
 
-/// The limits that are tried first, as shares of the largest commanded torque.
-const LIMITS: [f64; 11] = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.86, 0.91, 0.95];
+/// The limits that are tried first, as shares of the largest commanded torque. The largest parts beyond neighbouring limits
+/// differ by a factor of at most 1.35, so that the coefficient of one of them is within [`CUT_OFF`], whatever the true limit.
+const LIMITS: [f64; 15] = [
+    0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.83, 0.86, 0.885, 0.91, 0.93, 0.95, 0.965,
+];
 /// The limits that are tried first beside [`LIMITS`]: a position loop may command many times the torque that the drive can give.
 const WOUND_UP: [f64; 7] = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
 

@@ -201,7 +201,7 @@ def _of_frame(frame: pandas.DataFrame, name: str) -> list[tuple[str, _Column]]:
 
 def _column(series: Any, name: str, header: str) -> Optional[_Column]:
     """The column, or None if it holds no numbers and no times."""
-    values = np.asarray(series)
+    values = np.asarray(_filled(series))
     if values.dtype.kind == "O" and str(getattr(series, "dtype", "")).startswith("datetime64"):
         values = series.to_numpy(dtype="datetime64[ns]")
     if values.ndim != 1:
@@ -220,6 +220,13 @@ def _column(series: Any, name: str, header: str) -> Optional[_Column]:
         return np.array([np.nan if value is None or value is _na() else value for value in values], dtype=np.float64)
     except (TypeError, ValueError):
         return None
+
+
+def _filled(values: Any) -> Any:
+    """The values, with NaN where a masked array has none."""
+    if not np.ma.isMaskedArray(values) or not np.ma.is_masked(values):
+        return values
+    return values.astype(np.float64).filled(np.nan)
 
 
 def _na() -> object:
@@ -249,7 +256,7 @@ def _of_arrays(arrays: Mapping[str, Any], name: str, namer: _Namer) -> list[tupl
         if arrays.get(key) is None:
             continue
         try:
-            values = np.asarray(arrays[key], dtype=np.float64)
+            values = np.asarray(_filled(arrays[key]), dtype=np.float64)
         except (TypeError, ValueError) as error:
             raise JointwiseError(f"{name}: \"{key}\" holds no numbers: {error}") from None
         if values.ndim == 1:

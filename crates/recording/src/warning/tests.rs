@@ -19,7 +19,7 @@ fn a_gap_states_its_ends_and_the_shift_of_the_clock() {
     );
     assert_eq!(
         gap(-0.5),
-        "no rows from 2.3000 s to 2.3430 s, over which the clock is shifted by -50 % of a period; treated as separate segments"
+        "no rows from 2.3000 s to 2.3430 s, after which the samples are -0.50 periods off the clock of those before; treated as separate segments"
     );
 }
 

@@ -17,14 +17,20 @@ pub fn of(report: &Report) -> Vec<String> {
         steps.push("validate the fit with a recording of another motion (--held-out)".to_owned());
     }
     steps.extend(residuals(report));
+    steps.extend(experiments(report));
+    steps
+}
+
+/// What distinguishes the findings from their alternatives: the proposed motion, or an experiment for each finding.
+pub fn experiments(report: &Report) -> Vec<String> {
     match &report.next_experiment {
         Some(next) => {
             let sentences = next_words::sentences(next);
-            steps.extend(sentences.iter().map(|sentence| format!("next experiment: {sentence}")));
+            let said = sentences.iter().map(|sentence| format!("next experiment: {sentence}"));
+            said.collect()
         }
-        None => steps.extend(ambiguous(report)),
+        None => ambiguous(report),
     }
-    steps
 }
 
 /// The unexplained residuals, the largest first.
@@ -68,15 +74,11 @@ fn ambiguous(report: &Report) -> Vec<String> {
     let findings = report.findings.iter().filter(|finding| alternatives::has_any(finding));
     let said = findings.map(|finding| {
         let place = words::joint(finding.joint.as_deref());
-        let what = format!(
-            "{place}, {}: could also be {}",
+        format!(
+            "{place}, {}: {}",
             words::effect(finding),
-            alternatives::text(finding)
-        );
-        match words::experiments(finding).as_str() {
-            "" => what,
-            experiments => format!("{what}; experiment that distinguishes them: {experiments}"),
-        }
+            alternatives::with_experiment(finding)
+        )
     });
     said.collect()
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::bail;
 use arm::{Arm, FixedBecause, FixedJoint};
-use recording::{Recording, RegularRecording, Signal, nearest};
+use recording::{Recording, RegularRecording, Signal, Warning, nearest};
 
 /// The column of each joint of the arm. Columns of joints that are fixed in the arm are omitted.
 ///
@@ -88,6 +88,16 @@ pub(super) fn order(
             "{}: has no [joints.{joint}] for {} of {}{hint}; add a table for each joint of the arm",
             map.display(),
             quoted(&lacking),
+            arm.name()
+        );
+    }
+    let empty = recording.warnings.iter().find_map(|warning| match warning {
+        Warning::JointLeftOut { joint, column } if lacking.contains(joint) => Some((joint, column)),
+        _ => None,
+    });
+    if let Some((joint, column)) = empty {
+        bail!(
+            "{name}: column \"{column}\" has no values, so that \"{joint}\" of {} cannot be diagnosed; record it, or fix the joint if it did not move: --lock {joint}=VALUE",
             arm.name()
         );
     }

@@ -163,11 +163,12 @@ impl Problem<'_> {
             return true;
         }
         let columns = &selected.fit.columns;
+        let on_the_arm = || {
+            let weights = &selected.fit.weights;
+            self.products.arm_gain(self.table, columns, &candidate.columns, weights) > 0.0
+        };
         let Some(joint) = candidate.joint else {
-            return self
-                .products
-                .arm_gain(self.table, columns, &candidate.columns, &selected.fit.weights)
-                > 0.0;
+            return on_the_arm();
         };
         let fit = || {
             self.products
@@ -175,11 +176,12 @@ impl Problem<'_> {
         };
         let base = bases[joint].get_or_init(fit);
         let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
-        outside
-            > if candidate.hypothesis.name().is_none() {
-                self.thresholds.predicted * inside
-            } else {
-                0.0
-            }
+        let needed = if candidate.hypothesis.name().is_none() {
+            self.thresholds.predicted * inside
+        } else {
+            0.0
+        };
+        // What acts on two joints may show on the other one.
+        outside > needed || (candidate.hypothesis.other.is_some() && on_the_arm())
     }
 }

@@ -1,0 +1,78 @@
+//! Effects that a part of the recordings hides: their own joint, the size of the held-out torques, noise.
+
+mod support;
+
+use std::cell::Cell;
+
+use support::{ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, named, sentences, start, trio};
+
+/// Uniform noise between −0.5 and 0.5, of a multiplicative congruential generator (Lehmer).
+fn noise(state: &Cell<u64>) -> f64 {
+    state.set(state.get() * 48_271 % 2_147_483_647);
+    state.get() as f64 / 2_147_483_647.0 - 0.5
+}
+
+/// The drive of the shoulder also turns with the column. Noise hides it on the shoulder, and the column shows it.
+#[test]
+fn a_coupling_that_only_the_other_joint_shows() {
+    for seed in 1..=6 {
+        let state = Cell::new(seed);
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            tau[SHOULDER] += 0.1 * motion.qd[TURN] + 10.0 * noise(&state);
+            tau[TURN] += 0.1 * motion.qd[SHOULDER];
+        };
+        let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+        let expected = [("transmission_coupling", Some("shoulder"))];
+        assert_eq!(named(&diagnosis), expected, "{seed}: {:?}", sentences(&diagnosis));
+    }
+}
+
+/// The torques that the held-out recording commands are four times as large as those of the training recordings, in which the limit
+/// is found.
+#[test]
+fn a_torque_limit_far_below_the_held_out_torques() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        let beyond = (tau[SHOULDER].abs() - 30.0).max(0.0);
+        let wound_up = if motion.clock < start(2) { 1.0 } else { 40.0 };
+        tau[SHOULDER] += wound_up * beyond * tau[SHOULDER].signum();
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let mut findings = diagnosis.report.findings.iter();
+    let limit = findings.find(|finding| finding.effect == "torque_saturation");
+    let limit = limit
+        .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
+        .parameters["limit"];
+    assert!((limit.value / 30.0 - 1.0).abs() < 0.03, "{limit:?}");
+}
+
+/// Where noise hides viscous friction, Coulomb friction takes its place and is too large; its interval contains the true level.
+#[test]
+fn the_level_of_friction_beside_viscous_friction_that_noise_hides() {
+    let (level, coefficient) = (0.6, 0.12);
+    let state = Cell::new(1);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        for joint in 0..3 {
+            let speed = motion.qd[joint];
+            tau[joint] += level * speed.signum() + coefficient * speed + [6.0, 20.0, 8.0][joint] * noise(&state);
+        }
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let findings = diagnosis.report.findings.iter();
+    let frictions = findings.filter(|finding| finding.effect == "coulomb_friction");
+    let elbow = trio().joints()[ELBOW].name.clone();
+    let mut seen = false;
+    for finding in frictions {
+        let [low, high] = finding.parameters["level"].ci95;
+        assert!(low <= level && level <= high, "{low} to {high}: {}", finding.sentence);
+        seen |= finding.joint.as_ref() == Some(&elbow);
+    }
+    assert!(seen, "{:?}", sentences(&diagnosis));
+    let is_viscous = |finding: &diagnosis::Finding| finding.effect == "viscous_friction";
+    assert!(
+        !diagnosis.report.findings.iter().any(is_viscous),
+        "{:?}",
+        sentences(&diagnosis)
+    );
+}
