@@ -335,7 +335,8 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             share >= study.thresholds.least_share
                 && share >= alike
                 && share >= study.thresholds.beside_a_larger * others(false)
-                && share >= study.thresholds.beside_a_certain * others(true)
+                // A share above one cancels another, as links that are too heavy and a scale of all of them do.
+                && share >= study.thresholds.beside_a_certain * others(true).min(1.0)
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
         // The end of a gap jolts all joints, most of all its own. A contact must stand out on the joint on which it is largest.

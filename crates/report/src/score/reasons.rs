@@ -14,9 +14,16 @@ pub fn reason(target: &Target, score: &Score) -> String {
         Figure::FalseCases => "the section about failures lists every false name.".to_owned(),
         Figure::MacroF1 => families(score),
         Figure::EmptyCases => {
-            let empty = score.false_names.iter().filter(|name| name.injected_there.is_empty());
+            let has_any = |case: &String| {
+                let outside = score.outside.iter().filter(|outcome| !outcome.injected.is_empty());
+                let inside = score.injected.iter().map(|outcome| &outcome.case);
+                inside
+                    .chain(outside.map(|outcome| &outcome.case))
+                    .any(|other| other == case)
+            };
+            let empty = score.false_names.iter().filter(|name| !has_any(&name.case));
             format!(
-                "named where nothing is injected: {}.",
+                "named in cases without an injected fault: {}.",
                 tally(empty.map(|name| name.effect.as_str()))
             )
         }

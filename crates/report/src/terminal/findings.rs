@@ -35,10 +35,12 @@ pub fn columns(report: &Report) -> String {
     } else {
         ""
     };
-    let unexplained = if report.unexplained.is_empty() {
-        ""
-    } else {
-        "; unexplained: the residual on the recordings, training or held-out, on which it is larger"
+    let unexplained = match (report.unexplained.is_empty(), report.recordings.before.is_empty()) {
+        (true, _) => "",
+        (false, true) => "; unexplained: the residual on the recordings, training or held-out, on which it is larger",
+        (false, false) => {
+            "; unexplained: the residual on the recordings, those from before with the training ones, or held-out, on which it is larger"
+        }
     };
     format!(
         "share and error are relative to the standard deviation of the measured torque; share: standard deviation of the \

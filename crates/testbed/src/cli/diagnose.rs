@@ -112,7 +112,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "OUT")]
     pub residuals: Option<PathBuf>,
 
-    /// Write the corrected model to this file (.toml): the known effects and the effects found
+    /// Write the corrected model to this file (.toml): the known effects, the effects found, and the corrections of links and constant torques that no finding names
     #[arg(long, value_name = "OUT")]
     pub model: Option<PathBuf>,
 

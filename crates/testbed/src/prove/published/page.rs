@@ -61,7 +61,7 @@ fn opening(real: &Real) -> Vec<Block> {
     let besides = || real.robots.iter().flat_map(|tried| &tried.score.besides);
     let contradicted = besides().filter(|name| name.contradicted_by.is_some()).count();
     let [inside, median] = agreement(real.robots.iter().flat_map(numbers));
-    let found = sum(&[Named, SameTorque]);
+    let [found, equivalent] = [sum(&[Named, SameTorque]), sum(&[SameTorque])];
     let absent = match real.absent.as_slice() {
         [] => String::new(),
         list => format!(" Not tested, because their folders are missing: {}.", list.join(", ")),
@@ -102,7 +102,7 @@ fn opening(real: &Real) -> Vec<Block> {
         Block::Title("Real robots: published recordings, diagnosed blind".into()),
         text(format!(
             "Published recordings of {} real machines were diagnosed by processes that had access to the recordings and a rigid URDF only. Of {said} effects \
-             that the publishers report (an effect on a joint), {found} are named. Where the publishers give a value and the diagnosis names the effect, {inside} values are inside our 95 % interval; the \
+             that the publishers report (an effect on a joint), {found} are named, {equivalent} of them by an equivalent effect. Where the publishers give a value and the diagnosis names the effect, {inside} values are inside our 95 % interval; the \
              median difference is {median}. {contradicted} names contradict the publication.{absent}",
             real.robots.len()
         )),
