@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use recording::Recording;
 
 use crate::diagnose_mistakes::{doubted, with_numbers};
-use crate::diagnose_refusals::{case, changed};
+use crate::diagnose_refusals::{case, changed, refused, refused_with};
 use crate::support::{Sandbox, root, says};
 
 #[test]
@@ -89,4 +89,23 @@ fn degrees_of_one_of_two_joints_are_not_attributed_to_both() {
         assert_eq!(has, expected, "{map}");
         assert!(!joint2.contains("unit"), "{map}");
     }
+}
+
+/// A joint whose torque was recorded nowhere has a column, with a map and without one.
+#[test]
+fn a_joint_without_torques_is_refused_for_its_empty_column() {
+    let empty = changed(|cells| cells[5].clear());
+    let said = [
+        "a.csv: column \"tau_shoulder\" has no values",
+        "\"shoulder\" of trio",
+        "--lock shoulder=VALUE",
+    ];
+    says(&refused_with(&empty), &said);
+    let case = case();
+    case.sandbox.write("a.csv", &empty);
+    let joint = |name: &str| format!("[joints.{name}]\nq = \"q_{name}\"\ntau = \"tau_{name}\"\n");
+    let joints: String = ["turn", "shoulder", "elbow"].map(joint).concat();
+    case.sandbox
+        .write("map.toml", &format!("[time]\ncolumn = \"t\"\n\n{joints}"));
+    says(&refused(&case, &["--map", "map.toml"]), &said);
 }

@@ -80,8 +80,9 @@ decisive! {
     /// The part of a larger effect on the same joint that an effect must exceed: a smaller effect may be an error of
     /// the larger one's form. Source: first diagnosis.
     beside_a_larger: 0.1,
-    /// The part of a larger effect of certain form on the same joint that an effect must exceed. Source: a ripple of 22
-    /// % of the torque beside a tilted base, which 0.05 excluded.
+    /// The part of a larger effect of certain form on the same joint that an effect must exceed; a share above one counts as one. Source:
+    /// a ripple of 22 % of the torque beside a tilted base, which 0.05 excluded; an offset of 9 % beside a scale of all inertias with a
+    /// share of 4.6.
     beside_a_certain: 0.02,
     /// The least share of an unmodelled form in a joint's torque. Source: first diagnosis.
     least_unmodelled_share: 0.012,

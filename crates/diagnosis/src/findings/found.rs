@@ -137,12 +137,7 @@ fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
         let is_such = other.hypothesis == this.hypothesis || other.hypothesis.generalises() == Some(this.hypothesis);
         is_such && other.joint == this.joint
     };
-    let is_known = study.data.known.iter().any(|known| {
-        let spec = known.spec();
-        let is_such = [Some(spec.name), spec.generalises].contains(&this.hypothesis.name());
-        let joint = this.joint.map(|joint| &*study.data.arm.joints()[joint].name);
-        is_such && this.hypothesis.name().is_some() && known.joint() == joint
-    });
+    let is_known = study.has_known(this.hypothesis, this.joint);
     // What remains of a spring today may be a part of links that are wrong.
     let may_remain =
         this.hypothesis.spec().may_be_inertial && this.joint.is_some() && study.strengths.strongest() > 0.0;

@@ -16,13 +16,18 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
     let (true, true, [own]) = (spec.is_baseline, spec.is_friction, &candidate.columns[..]) else {
         return;
     };
+    // What changed, changed alone.
+    if !study.always_acts(member.candidate) {
+        return;
+    }
     let selected = &last.judged.named.set;
     let is_other = |index: &usize| {
         let other = &study.candidates[*index];
         let (kind, spec) = (other.hypothesis, other.hypothesis.spec());
         let is_its_like = spec.is_baseline && spec.is_friction && kind != candidate.hypothesis;
         let is_there = || selected.iter().any(|c| c == index || problem.exclude(*c, *index));
-        is_its_like && other.joint == candidate.joint && study.always_acts(*index) && !is_there()
+        let is_lacking = || !study.has_known(kind, other.joint) && !is_there();
+        is_its_like && other.joint == candidate.joint && study.always_acts(*index) && is_lacking()
     };
     let Some(other) = (0..study.candidates.len()).find(is_other) else {
         return;

@@ -77,8 +77,8 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         }
     }
     selected = connection::in_place_of_delays(study, selected);
-    // With all sizes found, candidates that did not pay or were impossible before may do so, and the residual may show a contact or
-    // a ripple that wrong sizes hid.
+    // With all sizes found, candidates that did not pay or were impossible before may do so, and the residual may show a contact, a
+    // ripple or an onset that wrong sizes hid.
     for _ in 0..MOST_LAST {
         study.suggest(&selected);
         let products = study.training_products();

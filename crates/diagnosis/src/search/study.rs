@@ -102,6 +102,16 @@ impl Study {
         self.terms(candidate).iter().all(Term::is_always)
     }
 
+    /// Whether the known effects contain this one on a joint, or one that generalises it.
+    pub fn has_known(&self, hypothesis: Hypothesis, joint: Option<usize>) -> bool {
+        let joint = joint.map(|joint| &*self.data.arm.joints()[joint].name);
+        self.data.known.iter().any(|known| {
+            let spec = known.spec();
+            let is_such = [Some(spec.name), spec.generalises].contains(&hypothesis.name());
+            is_such && hypothesis.name().is_some() && known.joint() == joint
+        })
+    }
+
     /// Whether a candidate acts in the recordings from before only, or in the others only.
     pub fn changes(&self, candidate: usize) -> bool {
         let at = Acts::of(&self.terms(candidate)).time();

@@ -335,7 +335,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             share >= study.thresholds.least_share
                 && share >= alike
                 && share >= study.thresholds.beside_a_larger * others(false)
-                // A share above one cancels another, as links that are too heavy and a scale of all of them do.
+                // A share above one cancels the model's torque or another effect's: the torque hardly shows its form's error.
                 && share >= study.thresholds.beside_a_certain * others(true).min(1.0)
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };

@@ -19,7 +19,8 @@ static SPEC: Spec = Spec {
     title: "transmission coupling",
     meaning: "the motion of another joint turns the drive of this joint (geared wrist)",
     distinguished_by: "motions of each of the two joints alone",
-    formula: "the drive of each of two joints also turns with the other joint, so that the effect acts on both; tested for \
+    formula: "the drive of each of two joints also turns with the other one, o: viscous q̇ₒ + coulomb sgn(q̇ + sense q̇ₒ) + inertia q̈ₒ \
+              on both. What it adds by the joint's own motion is a part of the joint's own friction and rotor inertia. Tested for \
               joints that are neighbours or have one joint between them",
     sentence: "a drive that also turns with {other}, with a viscous friction of {viscous} and an inertia of {inertia}",
     parameters: &[

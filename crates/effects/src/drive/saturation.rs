@@ -64,8 +64,8 @@ const BELOW_NEED: f64 = 0.4;
 /// joint arm_1 a limit of 3.4 N m was named beside 3.3 N m of friction.
 const LEAST_OVER_FRICTION: f64 = 1.3;
 
-/// The limits that are tried first, as shares of the largest commanded torque. The largest parts beyond neighbouring limits
-/// differ by a factor of at most 1.35, so that the coefficient of one of them is within [`CUT_OFF`], whatever the true limit.
+/// The limits that are tried first, as shares of the largest commanded torque. They are so close to each other that the coefficient
+/// of one of them is within [`CUT_OFF`] if the true limit is 0.2 to 0.97 of this torque.
 const LIMITS: [f64; 15] = [
     0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.83, 0.86, 0.885, 0.91, 0.93, 0.95, 0.965,
 ];
@@ -172,6 +172,15 @@ mod tests {
         assert!(TorqueSaturation.is_contradicted(&limit(3.4), &[friction("a")]));
         assert!(!TorqueSaturation.is_contradicted(&limit(3.4), &[friction("b")]));
         assert!(!TorqueSaturation.is_contradicted(&limit(6.6), &[friction("a")]));
+    }
+
+    #[test]
+    fn one_of_the_first_limits_has_a_possible_coefficient() {
+        for thousandths in 200..=970 {
+            let limit = f64::from(thousandths) / 1e3;
+            let is_possible = |tried: &f64| CUT_OFF.contains(&((1.0 - limit) / (1.0 - tried)));
+            assert!(LIMITS.iter().any(is_possible), "{limit}");
+        }
     }
 
     #[test]

@@ -224,9 +224,11 @@ def _column(series: Any, name: str, header: str) -> Optional[_Column]:
 
 def _filled(values: Any) -> Any:
     """The values, with NaN where a masked array has none."""
-    if not np.ma.isMaskedArray(values) or not np.ma.is_masked(values):
+    if not np.ma.is_masked(values):
         return values
-    return values.astype(np.float64).filled(np.nan)
+    if values.dtype.kind in "iub":
+        values = values.astype(np.float64)
+    return values.filled(np.datetime64("NaT") if values.dtype.kind == "M" else np.nan)
 
 
 def _na() -> object:

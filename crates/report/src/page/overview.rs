@@ -158,7 +158,7 @@ impl Page<'_> {
             p.small.soft {
                 "Share: standard deviation of the effect's torque over the standard deviation of the measured torque. The error is \
                  the RMS torque error over the standard deviation of the measured torque, with the nominal model → with all effects \
-                 found. Held-out recordings are used in no fit, with three exceptions that the documentation of the limits names. The error belongs to the joint and is repeated for each of its \
+                 found. Held-out recordings are used in no fit, with the three exceptions in docs/diagnosis.md. The error belongs to the joint and is repeated for each of its \
                  findings."
             }
         };

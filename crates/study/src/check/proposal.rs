@@ -13,9 +13,9 @@ use super::fit::fit;
 use super::order;
 use super::smooth::Smooth;
 use super::thresholds::{
-    BEYOND_LIMITS, CERTAIN, CERTAIN_WHERE_EXPLAINED, CONTRADICTS, LEAD, LEAST_INSTANTS, MAY_REMAIN, NOT_CONTRADICTED,
-    ONE_CONTRADICTS_IN, OVERWHELMING, REDUCED, REPORTED, REPORTED_WHERE_EXPLAINED, SUPPORTS, UNEXPLAINED, WEIGHED,
-    WORTH_WEIGHING,
+    BEYOND_LIMITS, CERTAIN, CERTAIN_WHERE_EXPLAINED, CONTRADICTS, HARDLY_REDUCED, LEAD, LEAST_INSTANTS, MAY_REMAIN,
+    NOT_CONTRADICTED, ONE_CONTRADICTS_IN, OVERWHELMING, REDUCED, REPORTED, REPORTED_WHERE_EXPLAINED, SUPPORTS,
+    UNEXPLAINED, WEIGHED, WORTH_WEIGHING,
 };
 use super::turns;
 
@@ -247,7 +247,8 @@ fn best_of<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Optio
     } else {
         let has_evidence = best.nats > if is_clear { CERTAIN } else { CERTAIN_WHERE_EXPLAINED };
         let is_contradicted = of.iter().filter(contradicts).count() > of.len() / ONE_CONTRADICTS_IN;
-        supporters > 1 && has_evidence && (is_overwhelming || !is_contradicted)
+        let is_reduced = without > HARDLY_REDUCED * with;
+        supporters > 1 && has_evidence && is_reduced && (is_overwhelming || !is_contradicted)
     };
     Some(Best {
         best,

@@ -49,6 +49,16 @@ pub(super) fn order(
         .filter(|joint| !recording.joints.contains(joint))
         .cloned()
         .collect();
+    let empty = recording.warnings.iter().find_map(|warning| match warning {
+        Warning::JointLeftOut { joint, column } if lacking.contains(joint) => Some((joint, column)),
+        _ => None,
+    });
+    if let Some((joint, column)) = empty {
+        bail!(
+            "{name}: column \"{column}\" has no values, so that \"{joint}\" of {} cannot be diagnosed; record it, or fix the joint if it did not move: --lock {joint}=VALUE",
+            arm.name()
+        );
+    }
     let is_numbered = recording.joints.iter().all(|joint| joint.parse::<usize>().is_ok());
     if lacking.len() == known.len() && is_numbered {
         bail!(
@@ -88,16 +98,6 @@ pub(super) fn order(
             "{}: has no [joints.{joint}] for {} of {}{hint}; add a table for each joint of the arm",
             map.display(),
             quoted(&lacking),
-            arm.name()
-        );
-    }
-    let empty = recording.warnings.iter().find_map(|warning| match warning {
-        Warning::JointLeftOut { joint, column } if lacking.contains(joint) => Some((joint, column)),
-        _ => None,
-    });
-    if let Some((joint, column)) = empty {
-        bail!(
-            "{name}: column \"{column}\" has no values, so that \"{joint}\" of {} cannot be diagnosed; record it, or fix the joint if it did not move: --lock {joint}=VALUE",
             arm.name()
         );
     }

@@ -181,7 +181,8 @@ impl Problem<'_> {
         } else {
             0.0
         };
-        // What acts on two joints may show on the other one.
-        outside > needed || (candidate.hypothesis.other.is_some() && on_the_arm())
+        // A coupling acts on two joints, and may show on the other one. Unmodelled forms of another joint's motion act on one.
+        let is_coupling = candidate.hypothesis.name().is_some() && candidate.hypothesis.other.is_some();
+        outside > needed || (is_coupling && on_the_arm())
     }
 }
