@@ -324,10 +324,13 @@ fn the_table_has_units() {
     assert_eq!(
         header(["revolute", "revolute"]),
         [
-            "joint position speed moves reversals torque q step qd late",
-            "(rad) (rad/s) (N m)"
+            "joint position speed in reversals torque encoder velocity",
+            "(rad) (rad/s) motion (N m) step delay"
         ]
     );
-    assert_eq!(header(["prismatic", "prismatic"])[1], "(m) (m/s) (N)");
-    assert_eq!(header(["revolute", "prismatic"])[1], "(rad, m) (rad/s, m/s) (N m, N)");
+    assert_eq!(header(["prismatic", "prismatic"])[1], "(m) (m/s) motion (N) step delay");
+    assert_eq!(
+        header(["revolute", "prismatic"])[1],
+        "(rad, m) (rad/s, m/s) motion (N m, N) step delay"
+    );
 }

@@ -78,9 +78,12 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     }
     selected = connection::in_place_of_delays(study, selected);
     // With all sizes found, candidates that did not pay or were impossible before may do so, and the residual may show a contact, a
-    // ripple or an onset that wrong sizes hid.
+    // ripple or an onset that wrong sizes hid. Where unmodelled forms remain, it would show the errors of these.
     for _ in 0..MOST_LAST {
-        study.suggest(&selected);
+        let is_named = |&c: &usize| study.candidates[c].hypothesis.name().is_some();
+        if selected.set.iter().all(is_named) {
+            study.suggest(&selected);
+        }
         let products = study.training_products();
         let allowed = study.allowed();
         let before = selected.set.clone();
