@@ -15,6 +15,7 @@ use crate::thresholds::MOST_REFUSED;
 
 pub mod bootstrap;
 pub mod constant_torques;
+pub mod coupling;
 pub mod direction;
 pub mod final_fit;
 pub mod gain;

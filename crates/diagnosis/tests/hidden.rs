@@ -28,6 +28,40 @@ fn a_coupling_that_only_the_other_joint_shows() {
     }
 }
 
+/// A torque on the column alone that follows the speed of the shoulder: no drive turns with both, because the shoulder has no reaction,
+/// although noise hides most of it.
+#[test]
+fn a_torque_on_one_joint_alone_is_no_coupling() {
+    let state = Cell::new(1);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        tau[SHOULDER] += 4.0 * noise(&state);
+        tau[TURN] += 0.4 * motion.qd[SHOULDER];
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    assert_eq!(named(&diagnosis), [], "{:?}", sentences(&diagnosis));
+    let column = trio().joints()[TURN].name.clone();
+    let open = diagnosis.report.unexplained.iter().map(|open| &open.joint);
+    assert!(open.eq([&column]), "{:?}", diagnosis.report.unexplained);
+}
+
+/// A heavy body on the tool in one of two recordings: no masses explain both, but some explain each.
+#[test]
+fn a_load_in_one_recording_is_no_other_signal() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        if motion.clock >= start(1) {
+            tau[ELBOW] *= -1.0;
+        }
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    assert!(
+        diagnosis.report.not_diagnosed.is_empty(),
+        "{:?}",
+        diagnosis.report.not_diagnosed
+    );
+}
+
 /// The torques that the held-out recording commands are several times as large as those of the training recordings, in which the
 /// limit is found.
 #[test]

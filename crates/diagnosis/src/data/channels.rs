@@ -1,6 +1,7 @@
 //! Detects torque channels without a torque: dead and idle channels, other quantities, other signals.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use effects::{Scales, sign};
 use nalgebra::{DMatrix, DVector};
@@ -126,6 +127,27 @@ struct Rows {
     plain: Vec<Vec<f64>>,
     /// Further columns: positions, weight and masses of any size.
     more: Vec<Vec<f64>>,
+    /// The recording of each row.
+    recording: Vec<usize>,
+}
+
+impl Rows {
+    /// The rows of each recording, in quarters where these have enough.
+    fn stretches(&self) -> Vec<Range<usize>> {
+        let recordings = self.recording.chunk_by(|a, b| a == b);
+        let mut stretches = Vec::new();
+        let mut start = 0;
+        for rows in recordings.map(<[usize]>::len) {
+            let quarter = rows / 4;
+            if quarter >= LEAST_CHANNEL_ROWS {
+                stretches.extend((0..4).map(|k| start + k * quarter..start + (k + 1) * quarter));
+            } else {
+                stretches.push(start..start + rows);
+            }
+            start += rows;
+        }
+        stretches
+    }
 }
 
 /// Why the channel is not the joint's torque, judged by the model and by regressions; `None` if it may be.
@@ -157,7 +179,20 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
             .into_iter()
             .any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
     };
-    (error > UNRELATED && !is_limited()).then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
+    // A load that the arm holds in some of the recordings only, or a part of one, is in no sum of the columns over all rows.
+    let is_explained_in_stretches = || {
+        let error = |rows_of: Range<usize>| {
+            let part = |column: &&Vec<f64>| column[rows_of.clone()].to_vec();
+            let columns: Vec<Vec<f64>> = all.iter().map(part).collect();
+            let columns: Vec<&Vec<f64>> = columns.iter().collect();
+            cross_validated(&columns, &rows.torque[rows_of])
+        };
+        let mut errors: Vec<f64> = rows.stretches().into_iter().map(error).collect();
+        errors.sort_by(f64::total_cmp);
+        quantile_of_sorted(&errors, 0.5) < EXPLAINS_THE_LIMITED
+    };
+    (error > UNRELATED && !is_limited() && !is_explained_in_stretches())
+        .then(|| Why::Unrelated((1.0 - error * error).max(0.0)))
 }
 
 fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Rows {
@@ -166,6 +201,7 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
         needed: Vec::new(),
         plain: vec![Vec::new(); 4],
         more: Vec::new(),
+        recording: Vec::new(),
     };
     for (chunk, rigid) in motions.chunks.iter().zip(rigid) {
         if motions.sources[chunk.recording].held_out {
@@ -185,6 +221,8 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
         rows.torque.extend(filtered(&chunk.tau[joint]));
         let needed = filtered(&rigid.tau[joint]);
         rows.needed.extend(&needed);
+        rows.recording
+            .extend(std::iter::repeat_n(chunk.recording, moving.len()));
         let plain = [needed, of(qd, sign), filtered(qd), vec![1.0; moving.len()]];
         rows.plain
             .iter_mut()
@@ -223,7 +261,7 @@ fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
         .collect();
     let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
     let length = y.len().div_ceil(CHANNEL_FOLDS);
-    let folds: Vec<std::ops::Range<usize>> = (0..CHANNEL_FOLDS)
+    let folds: Vec<Range<usize>> = (0..CHANNEL_FOLDS)
         .map(|fold| (fold * length).min(y.len())..((fold + 1) * length).min(y.len()))
         .collect();
     let sums: Vec<(DMatrix<f64>, DVector<f64>, f64)> = folds

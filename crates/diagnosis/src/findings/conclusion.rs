@@ -29,7 +29,7 @@ use crate::report::{
 use crate::search::own_load::OwnLoad;
 use crate::selection::FinalFit;
 use crate::selection::predict::errors;
-use crate::selection::{constant_torques, torque_constants};
+use crate::selection::{constant_torques, coupling, torque_constants};
 use crate::thresholds::LEAST_FOR_DYNAMICS;
 
 /// The note that the next experiment was requested in vain.
@@ -155,6 +155,7 @@ impl Conclusion {
             sentences::placeholders(&data.arm, &study.strengths.least),
             at_rest::note(last),
             torque_constants::note_on_unnamed(study, &judged.named),
+            coupling::note(study, &judged.named),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
         let notes = notes.into_iter().flatten().chain(not_there).collect();

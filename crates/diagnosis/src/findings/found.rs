@@ -12,6 +12,7 @@ use crate::report::{Change, Confusable, Finding, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
+use crate::selection::coupling::OnOneJoint;
 use crate::selection::gain::held_out_gain;
 use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
@@ -58,7 +59,11 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let last_link = as_last_link(&last.study, member.candidate);
     let few_links = last.payload.filter(|(payload, _)| *payload == member.candidate);
     let over_links = few_links.map(|(_, nats)| nats);
-    let evidence = over_links.map_or(member.evidence, |nats| nats.min(member.evidence));
+    let over_one_joint = OnOneJoint::of(study, &last.judged.named, member.candidate).map(|one| one.margin);
+    let evidence = over_links
+        .into_iter()
+        .chain(over_one_joint)
+        .fold(member.evidence, f64::min);
     let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
     let as_links = is_doubtful.then(|| (Hypothesis::of(&InertialParameters), None));
     let change = change(last, member.candidate);
@@ -133,9 +138,7 @@ fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
     let this = &study.candidates[candidate];
     let is_beside = |&other: &usize| {
         let other = &study.candidates[other];
-        // Friction of another form contains a level of Coulomb friction.
-        let is_such = other.hypothesis == this.hypothesis || other.hypothesis.generalises() == Some(this.hypothesis);
-        is_such && other.joint == this.joint
+        other.hypothesis.contains(this.hypothesis) && other.joint == this.joint
     };
     let is_known = study.has_known(this.hypothesis, this.joint);
     // What remains of a spring today may be a part of links that are wrong.

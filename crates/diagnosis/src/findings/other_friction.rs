@@ -25,16 +25,11 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
         let other = &study.candidates[*index];
         let (kind, spec) = (other.hypothesis, other.hypothesis.spec());
         let is_its_like = spec.is_baseline && spec.is_friction && kind != candidate.hypothesis;
-        // Friction of another form, such as Stribeck friction, contains a level of Coulomb friction.
         let contains = |c: usize| {
             let this = &study.candidates[c];
-            this.joint == other.joint && this.hypothesis.generalises() == Some(kind)
+            this.joint == other.joint && this.hypothesis.contains(kind)
         };
-        let is_there = || {
-            selected
-                .iter()
-                .any(|&c| c == *index || contains(c) || problem.exclude(c, *index))
-        };
+        let is_there = || selected.iter().any(|&c| contains(c) || problem.exclude(c, *index));
         let is_lacking = || !study.has_known(kind, other.joint) && !is_there();
         is_its_like && other.joint == candidate.joint && study.always_acts(*index) && is_lacking()
     };

@@ -44,6 +44,11 @@ impl Hypothesis {
         self.spec().is_baseline && !self.spec().is_friction
     }
 
+    /// Whether it is `other` or contains it: friction of another form, such as Stribeck friction, contains a level of Coulomb friction.
+    pub fn contains(self, other: Self) -> bool {
+        self == other || self.generalises() == Some(other)
+    }
+
     /// The simpler hypothesis that it generalises.
     pub fn generalises(self) -> Option<Self> {
         let kind = Kind::named(self.spec().generalises?)?;

@@ -106,9 +106,8 @@ impl Study {
     pub fn has_known(&self, hypothesis: Hypothesis, joint: Option<usize>) -> bool {
         let joint = joint.map(|joint| &*self.data.arm.joints()[joint].name);
         self.data.known.iter().any(|known| {
-            let spec = known.spec();
-            let is_such = [Some(spec.name), spec.generalises].contains(&hypothesis.name());
-            is_such && hypothesis.name().is_some() && known.joint() == joint
+            let kind = known.kind();
+            Hypothesis { kind, ..hypothesis }.contains(hypothesis) && known.joint() == joint
         })
     }
 

@@ -7,13 +7,14 @@ use torque::Corrected;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
+use crate::selection::coupling::OnOneJoint;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
 use crate::selection::payload::is_of_no_mass;
 use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
 use crate::selection::variation::is_variation;
-use crate::thresholds::{CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
+use crate::thresholds::{AGAINST_BOTH, CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
 
 /// Why an effect is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub enum Unclear {
     Residual,
     /// A lag of its joints' torques explains as much.
     Lag,
+    /// Only one of its two joints shows it, and the other contradicts it.
+    OneJoint,
     /// Recordings of one side of the change differ by as much.
     Variation,
 }
@@ -41,6 +44,7 @@ impl Unclear {
             Self::Size => "its interval contains the value without effect",
             Self::Residual => "it may be a part of what is unexplained on its joint",
             Self::Lag => "a lag of its joints' torques explains as much",
+            Self::OneJoint => "a torque on one of its joints alone explains more",
             Self::Variation => "recordings of one side of the change differ among themselves by as much",
         }
     }
@@ -97,6 +101,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Residual)
         } else if may_be_a_lag(study, judged, member) {
             Some(Unclear::Lag)
+        } else if OnOneJoint::of(study, &judged.named, member.candidate).is_some_and(|one| one.margin < -AGAINST_BOTH) {
+            Some(Unclear::OneJoint)
         } else if is_variation(study, judged, member) {
             Some(Unclear::Variation)
         } else {

@@ -44,7 +44,8 @@ pub const FAR_TOO_SMALL: f64 = 0.05;
 /// A channel holds another signal if all models have at least this error (NRMSE) on stretches that they were not fitted
 /// to. Source: as for [`FAR_TOO_SMALL`].
 pub const UNRELATED: f64 = 0.97;
-/// A channel whose values are clipped at some limit is a torque if the models have at most this error there (NRMSE).
+/// A channel whose values are clipped at some limit, or half of whose stretches are fitted one by one, is a torque if the models have at
+/// most this error there (NRMSE).
 pub const EXPLAINS_THE_LIMITED: f64 = 0.6;
 /// The ridge of these models, relative to columns of unit power, against collinear columns.
 pub const CHANNEL_RIDGE: f64 = 1e-4;

@@ -31,8 +31,7 @@ static SPEC: Spec = Spec {
         Parameter::new("sense", Quantity::Ratio).or(1.0).remarked(""),
     ],
     main: &["viscous", "inertia", "coulomb"],
-    // The only one in the cases of `torque_scale` was wrong, and 2.3 times as large.
-    least_beside_residual: Some(3.0),
+
     is_beyond_the_drive: true,
     against: Against::OtherSpeed,
     ..Spec::EMPTY
