@@ -16,7 +16,8 @@ use crate::search::study::Study;
 use crate::thresholds::{CUTOFF, FAR_LESS};
 
 /// How well the model of an arm explains recordings, with plain friction, drive inertia and a constant torque at every joint, and
-/// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says.
+/// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says, and of a load at
+/// the tip that only some of the recordings have.
 #[derive(Clone, Debug)]
 pub struct Agreement {
     /// Minus the logarithm of the evidence of the torques, each joint's relative to its standard deviation (nats). It is comparable
@@ -63,7 +64,7 @@ pub fn agreement(
         only: Some(OMITTED_BY_MOST.iter().flat_map(wanted).collect()),
         ..Options::default()
     };
-    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options);
+    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options).with_any_own_load(&options);
     // Forms of friction in the background have no sign, and may drive a joint.
     study.stated.is_friction_plain = true;
     let is_plain = |&candidate: &usize| study.always_acts(candidate);
@@ -102,7 +103,7 @@ pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agree
         known: known.to_vec(),
         ..Options::default()
     };
-    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options);
+    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options).with_any_own_load(&options);
     let selected = plan::search(&mut study, &|_| ());
     Ok(found(&study, &study.training_products(), &selected).misfit)
 }

@@ -2,10 +2,10 @@
 
 mod support;
 
-use arm::Arm;
+use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Agreement, Input, agreement};
 use recording::RegularRecording;
-use support::{ELBOW, SHOULDER, TRIO, inputs, recorded, regular, trio};
+use support::{ELBOW, Motion, SHOULDER, TRIO, baseline_friction, inputs, recorded, regular, trio};
 
 /// A recording of the arm with dry and viscous friction.
 fn with_friction() -> RegularRecording {
@@ -60,6 +60,27 @@ fn other_masses_cost_less_than_another_sign() {
     let inverted = of(&trio(), &inverted);
     assert!(scaled.unexplained.iter().all(|share| *share < 0.05), "{scaled:?}");
     assert!(scaled.misfit < inverted.misfit - 100.0, "{scaled:?}, {inverted:?}");
+}
+
+/// A load far heavier than the last link, in one of two recordings, is no wrong reading.
+#[test]
+fn a_load_in_one_recording_is_explained() {
+    let robot = trio();
+    let loaded = robot.clone().with_payload(&Inertia {
+        mass: 6.0,
+        com: Vector3::new(0.05, 0.02, 0.1),
+        tensor: Matrix3::identity() * 6e-3,
+    });
+    let recorded = |variant, of: &Arm| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            of.inverse_dynamics(&mut Workspace::new(of), &motion.q, &motion.qd, &motion.qdd, tau);
+            baseline_friction(motion, tau);
+        };
+        regular(&recorded(&robot, variant, 16.0, &injected))
+    };
+    let recordings = [recorded(0, &robot), recorded(1, &loaded)];
+    let found = agreement(&robot, &inputs(&recordings), &[], None).expect("it can be fitted");
+    assert!(found.unexplained.iter().all(|share| *share < 0.01), "{found:?}");
 }
 
 /// A torque with another sign in one of two recordings is not the torque of the model in both. It is compared nevertheless, because

@@ -87,6 +87,9 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
     assert!(!is_reported(&diagnosis));
     assert_eq!(named(&diagnosis), [("payload", None)], "{:?}", sentences(&diagnosis));
 
+    // A load of all that is heavier than any error of the last link.
+    assert!(!is_reported(&diagnosed([9.0; 4], |_, _| true, nothing)));
+
     let diagnosis = diagnosed([0.0, 0.0, 0.8, 0.8], |_, _| true, nothing);
     assert!(!is_reported(&diagnosis));
     let payload = diagnosis
@@ -99,6 +102,11 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
         "{:?}",
         sentences(&diagnosis)
     );
+
+    // A load that was put down is no effect of the model today.
+    let diagnosis = diagnosed([0.8, 0.8, 0.0, 0.0], |_, _| true, nothing);
+    assert_load(&diagnosis, &["a", "b"], 0.8);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
 
     let push = |variant: usize, motion: &Motion, tau: &mut [f64]| {
         if variant == 1 && (5.0..7.0).contains(&motion.time) {

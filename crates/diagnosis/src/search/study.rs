@@ -122,12 +122,25 @@ impl Study {
         Self::with(data, options, None)
     }
 
-    /// This study, in whose background the recordings with another load at the tip have a load of their own. A load that changed once
-    /// may be an effect instead.
-    pub fn with_own_load(mut self, options: &Options) -> Self {
+    /// This study, in whose background the recordings with another load at the tip have a load of their own. A load that was
+    /// picked up once may be an effect instead.
+    pub fn with_own_load(self, options: &Options) -> Self {
         let motions = &self.data.motions;
         let found = OwnLoad::found(&self.data, &self.table, &self.prior);
-        let own_load = found.filter(|load| !(motions.one_clock && load.changed_once(motions)));
+        let own_load = found.filter(|load| !(motions.one_clock && load.was_picked_up(motions)));
+        self.beside_load(options, own_load)
+    }
+
+    /// This study, in whose background the recordings with another load at the tip have a load of their own, also if it was picked up: for
+    /// a search of no such effect.
+    pub fn with_any_own_load(self, options: &Options) -> Self {
+        let found = OwnLoad::found(&self.data, &self.table, &self.prior);
+        let recordings = self.data.motions.sources.len();
+        self.beside_load(options, found.map(|load| load.of_more_mass(recordings)))
+    }
+
+    fn beside_load(mut self, options: &Options, own_load: Option<OwnLoad>) -> Self {
+        let motions = &self.data.motions;
         if let (Some(load), None) = (&own_load, motions.changed_at) {
             let mut data = self.data;
             for &recording in &load.recordings {

@@ -1,12 +1,16 @@
 //! Whether recordings of one side of a change differ among themselves as much as the two sides do.
 
 use effects::{Acts, Term};
+use nalgebra::{DMatrix, DVector};
 
 use crate::data::statistics::rms;
 use crate::regression::table::Table;
 use crate::search::study::Study;
 use crate::selection::judge::{Judged, Member};
 use crate::thresholds::{BLOCKS_A_SIDE, CHANGE_OVER_VARIATION, USUAL_VARIATION};
+
+/// The ridge against terms whose sizes are determined together only, relative to their own products.
+const COLLINEAR: f64 = 1e-12;
 
 /// A stretch of the recordings of one side.
 struct Block {
@@ -178,35 +182,42 @@ impl Torques {
     /// See [`over_variation`]; `sizes` are those of the terms in each stretch.
     fn over_variation(&self, sizes: &[Vec<f64>], blocks: &[Block]) -> Option<f64> {
         let terms = sizes.first()?.len();
-        let energy = |rows: &Vec<Vec<f64>>, term: usize| rows.iter().map(|row| row[term].powi(2)).sum::<f64>();
-        let energies: Vec<Vec<f64>> = self
-            .0
-            .iter()
-            .map(|rows| (0..terms).map(|term| energy(rows, term)).collect())
-            .collect();
-        let side = |is_after: bool| (0..blocks.len()).filter(move |&block| blocks[block].is_after == is_after);
-        let mean = |is_after: bool, term: usize| {
-            let all: f64 = side(is_after).map(|block| energies[block][term]).sum();
-            let sum: f64 = side(is_after)
-                .map(|block| energies[block][term] * sizes[block][term])
-                .sum();
-            (all > 0.0).then(|| sum / all)
+        let gram = |rows: &Vec<Vec<f64>>| {
+            let mut gram = DMatrix::zeros(terms, terms);
+            for row in rows {
+                let row = DVector::from_column_slice(row);
+                gram.ger(1.0, &row, &row, 1.0);
+            }
+            gram
         };
-        let means: Vec<[f64; 2]> = (0..terms)
-            .map(|term| Some([mean(false, term)?, mean(true, term)?]))
-            .collect::<Option<_>>()?;
+        let grams: Vec<DMatrix<f64>> = self.0.iter().map(gram).collect();
+        let sizes: Vec<DVector<f64>> = sizes.iter().map(|sizes| DVector::from_column_slice(sizes)).collect();
+        let side = |is_after: bool| (0..blocks.len()).filter(move |&block| blocks[block].is_after == is_after);
+        // The sizes of a side are those whose torques are nearest to the torques of its stretches. Some terms have no torque, and the sizes
+        // of others may be determined together only.
+        let mean = |is_after: bool| {
+            let mut all = side(is_after).fold(DMatrix::zeros(terms, terms), |sum, block| sum + &grams[block]);
+            let torques = side(is_after).fold(DVector::zeros(terms), |sum, block| sum + &grams[block] * &sizes[block]);
+            let acts = all.trace() > 0.0;
+            for term in 0..terms {
+                let energy = all[(term, term)];
+                all[(term, term)] += if energy > 0.0 { COLLINEAR * energy } else { 1.0 };
+            }
+            Some(all.cholesky()?.solve(&torques)).filter(|_| acts)
+        };
+        let means = [mean(false)?, mean(true)?];
         let (mut within, mut change) = (0.0, 0.0);
         for (block, rows) in self.0.iter().enumerate() {
             let own = usize::from(blocks[block].is_after);
             for row in rows {
                 let torque = |of: &dyn Fn(usize) -> f64| (0..terms).map(|term| of(term) * row[term]).sum::<f64>();
-                within += torque(&|term| sizes[block][term] - means[term][own]).powi(2);
-                change += torque(&|term| means[term][1] - means[term][0]).powi(2);
+                within += torque(&|term| sizes[block][term] - means[own][term]).powi(2);
+                change += torque(&|term| means[1][term] - means[0][term]).powi(2);
             }
         }
         // The number of stretches with equal torques that would be worth as much.
         let number = |is_after: bool| {
-            let of_blocks = || side(is_after).map(|block| energies[block].iter().sum::<f64>());
+            let of_blocks = || side(is_after).map(|block| grams[block].trace());
             of_blocks().sum::<f64>().powi(2) / of_blocks().map(|energy| energy * energy).sum::<f64>()
         };
         let (before, after) = (number(false), number(true));
@@ -236,6 +247,28 @@ mod tests {
     fn it_is_the_statistic_of_an_analysis_of_variance() {
         let found = ratio([1.0, 1.2, 2.0, 2.4]).expect("both sides have torque");
         assert!((found - 24.2).abs() < 1e-9, "{found}");
+    }
+
+    /// Of two terms with equal torques, the sizes are determined together only; a third has no torque.
+    #[test]
+    fn what_the_stretches_do_not_determine_is_no_variation() {
+        let blocks: Vec<Block> = (0..4)
+            .map(|block| Block {
+                start: f64::from(block),
+                is_after: block >= 2,
+            })
+            .collect();
+        let rows: Vec<Vec<Vec<f64>>> = (1..=4).map(|block| vec![vec![1.0, 1.0, 0.0]; 10 * block]).collect();
+        let sums = [1.0, 1.2, 2.0, 2.4];
+        let ratio = |apart: [f64; 4]| {
+            let sizes: Vec<Vec<f64>> = (0..4).map(|k| vec![sums[k] + apart[k], -apart[k], apart[k]]).collect();
+            Torques(rows.clone())
+                .over_variation(&sizes, &blocks)
+                .expect("both sides have torque")
+        };
+        let together = ratio([0.0; 4]);
+        let apart = ratio([30.0, -20.0, 50.0, 10.0]);
+        assert!((apart / together - 1.0).abs() < 1e-4, "{apart}, not {together}");
     }
 
     #[test]
