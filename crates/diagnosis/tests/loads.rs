@@ -5,7 +5,9 @@ mod support;
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options, diagnose};
 use recording::RegularRecording;
-use support::{ELBOW, Motion, SHOULDER, baseline_friction, inputs, motion, named, recorded, regular, sentences, trio};
+use support::{
+    ELBOW, Motion, SHOULDER, baseline_friction, inputs, motion, named, recorded, regular, sentences, start, trio,
+};
 
 /// The arm with `mass` (kg) at the tip.
 fn with_load(arm: &Arm, mass: f64) -> Arm {
@@ -107,6 +109,26 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
     let diagnosis = diagnosed([0.8, 0.8, 0.0, 0.0], |_, _| true, nothing);
     assert_load(&diagnosis, &["a", "b"], 0.8);
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+
+    // One that is put down within a recording.
+    let load = with_load(&trio(), 0.8);
+    let put_down = |_: usize, motion: &Motion, tau: &mut [f64]| {
+        if motion.clock < start(1) + 7.0 {
+            let [mut with, mut without] = [[0.0; 3]; 2];
+            for (arm, tau) in [(&load, &mut with), (&trio(), &mut without)] {
+                arm.inverse_dynamics(&mut Workspace::new(arm), &motion.q, &motion.qd, &motion.qdd, tau);
+            }
+            (0..3).for_each(|joint| tau[joint] += with[joint] - without[joint]);
+        }
+    };
+    let diagnosis = diagnosed([0.0; 4], |_, _| true, put_down);
+    assert_load(&diagnosis, &["a", "b"], 0.8);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+    let until = diagnosis.report.different_load.and_then(|load| load.until);
+    assert!(
+        until.is_some_and(|until| (until - start(1) - 7.0).abs() < 0.1),
+        "{until:?}"
+    );
 
     let push = |variant: usize, motion: &Motion, tau: &mut [f64]| {
         if variant == 1 && (5.0..7.0).contains(&motion.time) {

@@ -82,8 +82,8 @@ pub struct SourceRecording {
     pub held_out: bool,
     /// The duration that is used and the whole one (s), if it is not used whole.
     pub part: Option<[f64; 2]>,
-    /// Whether the tip has another load than in most recordings.
-    pub has_own_load: bool,
+    /// The time until which the tip has another load than in most recordings (s): −∞ if it does not, ∞ to the end of the recording.
+    pub own_load_until: f64,
     /// The time of the diagnosis' clock minus that of the recording's own (s).
     pub shift: f64,
     /// Noise of the filtered torque, one per joint (N m or N).
@@ -263,7 +263,7 @@ impl Motions {
         let slope = first.first_noise_gain();
         let acceleration = recording.q.par_iter().zip(&white.q);
         self.sources.push(SourceRecording {
-            has_own_load: false,
+            own_load_until: f64::NEG_INFINITY,
             name: input.name.to_owned(),
             held_out: input.held_out,
             part: None,

@@ -139,7 +139,7 @@ impl<'a> Prospect<'a> {
         }
         let seconds = chunk.period * chunk.stride as f64;
         let mut source = data.motions.sources[self.template].clone();
-        (source.held_out, source.has_own_load) = (false, false);
+        (source.held_out, source.own_load_until) = (false, f64::NEG_INFINITY);
         let motions = Motions {
             changed_at: None,
             dof,

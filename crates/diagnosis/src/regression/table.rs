@@ -302,8 +302,10 @@ impl Table {
                 } else if term.is(&OWN_LOAD) {
                     let k = term.of[0] * bodies::PER_LINK + term.of[1];
                     for (chunk, inertial) in motions.chunks.iter().zip(&inertial) {
-                        let share = f64::from(u8::from(motions.sources[chunk.recording].has_own_load));
-                        column.extend(inertial[joint][k].iter().map(|value| share * value));
+                        let until = motions.sources[chunk.recording].own_load_until;
+                        let has_load = |row: usize| chunk.time(chunk.tick_of(row)) < until;
+                        let values = inertial[joint][k].iter().enumerate();
+                        column.extend(values.map(|(row, value)| if has_load(row) { *value } else { 0.0 }));
                     }
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {

@@ -6,25 +6,31 @@
 
 mod equations;
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
-use self::equations::{LOAD, LoadEquations, Part, Solution, Variances};
+use self::equations::{LOAD, LoadEquations, Part, Solution, Variances, gains};
 use crate::data::Data;
 use crate::data::motion::Motions;
 use crate::data::statistics::NORMAL_95;
-use crate::regression::background::Prior;
+use crate::regression::background::{Background, Prior};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
 use crate::regression::table::Table;
-use crate::thresholds::{LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_SIZE};
+use crate::thresholds::{BETWEEN_RECORDINGS, LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_SIZE};
 
 /// The number of times that the variances of the joints are computed anew.
 const REWEIGHTINGS: usize = 4;
+/// The number of times that the time at which a load was put down is determined anew.
+const SPLITS: usize = 3;
 
 /// A load at the tip that only some of the recordings have.
 pub struct OwnLoad {
     /// The recordings, at most half of all, in ascending order.
     pub recordings: Vec<usize>,
+    /// The time at which it was put down within the last of them (s, the clock of the diagnosis); `None` if they have it to their ends.
+    pub until: Option<f64>,
     /// Its mass, compared with the other recordings (kg), and its first moments in the last link's frame (kg m).
     pub load: [f64; LOAD],
     /// Their standard deviations.
@@ -43,32 +49,102 @@ impl OwnLoad {
             ..Strengths::none(dof)
         };
         let background = prior.at(&wide)?;
+        let mut found = Self::within(data, table, &background, None)?;
+        for _ in 0..SPLITS {
+            let Some(until) = found.1 else { break };
+            let Some(next) = Self::within(data, table, &background, Some(until)) else {
+                break;
+            };
+            found = next;
+        }
+        Some(found.0)
+    }
+
+    /// The load, with the time at which it seems to be put down within a recording; with recordings that are divided at `split` (s), if
+    /// it is known that they are.
+    fn within(data: &Data, table: &Table, background: &Background, split: Option<f64>) -> Option<(Self, Option<f64>)> {
+        let dof = data.motions.dof;
+        let times = data.motions.row_times();
+        let stretches: Vec<Range<usize>> = table
+            .rows
+            .iter()
+            .flat_map(|rows| {
+                let at = split.map_or(rows.end, |split| {
+                    rows.start + times[rows.clone()].partition_point(|time| *time < split)
+                });
+                [rows.start..at, at..rows.end]
+            })
+            .filter(|rows| !rows.is_empty())
+            .collect();
         let parts: Vec<Part> = (0..dof)
             .into_par_iter()
-            .flat_map_iter(|joint| Part::of_joint(data, table, joint))
+            .flat_map_iter(|joint| Part::of_joint(data, table, joint, &stretches))
             .collect();
         let mut variances = Variances::first(data);
         for _ in 0..REWEIGHTINGS {
-            let same = LoadEquations::new(&parts, &variances, &background, (dof, recordings))?;
+            let same = LoadEquations::new(&parts, &variances, background, (dof, stretches.len()))?;
             variances = Variances::of(data, &parts, &same.alone());
         }
-        let normal = LoadEquations::new(&parts, &variances, &background, (dof, recordings))?;
-        let found = grown(&normal, &parts, &variances, recordings);
-        if found.recordings.is_empty() || found.load[0].abs() < LEAST_LOAD.max(NORMAL_95 * found.deviations[0]) {
+        let normal = LoadEquations::new(&parts, &variances, background, (dof, stretches.len()))?;
+        let found = grown(&normal, &parts, &variances, stretches.len());
+        if found.stretches.is_empty() || found.load[0].abs() < LEAST_LOAD.max(NORMAL_95 * found.deviations[0]) {
             return None;
         }
-        let mut group = found.recordings;
+        let mut group = found.stretches.clone();
         group.sort_unstable();
-        // The smaller group is the one that differs; of two halves, that with more mass.
-        let differs = 2 * group.len() < recordings || 2 * group.len() == recordings && found.load[0] > 0.0;
+        // The smaller group is the one that differs; of two halves, that with more mass, and of two sides of a time, that before it.
+        let (size, all) = (group.len(), stretches.len());
+        let differs = match split {
+            Some(_) => {
+                let first = &table.rows[in_order(&data.motions)[0]];
+                let stretch = stretches.iter().position(|stretch| stretch.start == first.start);
+                stretch.is_some_and(|stretch| group.contains(&stretch))
+            }
+            None => 2 * size < all || 2 * size == all && found.load[0] > 0.0,
+        };
         let sign = if differs { 1.0 } else { -1.0 };
-        Some(Self {
-            recordings: (0..recordings)
-                .filter(|recording| group.contains(recording) == differs)
+        let has_load = |rows: &Range<usize>| {
+            let stretch = stretches.iter().position(|stretch| stretch.start == rows.start);
+            stretch.is_some_and(|stretch| group.contains(&stretch) == differs)
+        };
+        let load = Self {
+            recordings: (0..table.rows.len())
+                .filter(|&recording| has_load(&table.rows[recording]))
                 .collect(),
+            until: split,
             load: std::array::from_fn(|k| sign * found.load[k]),
             deviations: found.deviations,
-        })
+        };
+        let put_down = load.put_down(data, || {
+            let mut gains = gains(data, table, &variances, &found);
+            gains.iter_mut().for_each(|gain| *gain *= sign);
+            gains
+        });
+        Some((load, put_down))
+    }
+
+    /// The time within a recording at which a load seems to be put down (s) that the first recordings have on a common clock; `gains` is
+    /// what it explains on each row.
+    fn put_down(&self, data: &Data, gains: impl FnOnce() -> Vec<f64>) -> Option<f64> {
+        let motions = &data.motions;
+        if !motions.one_clock || !self.changed_once(motions) || self.load[0] < 0.0 || !self.has_first(motions) {
+            return None;
+        }
+        let times = motions.row_times();
+        let gains = gains();
+        let (mut sum, mut most, mut until) = (0.0, 0.0, None);
+        let mut order: Vec<usize> = (0..times.len()).collect();
+        order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
+        for pair in order.windows(2) {
+            sum += gains[pair[0]];
+            if sum > most {
+                (most, until) = (sum, Some([times[pair[0]], times[pair[1]]]));
+            }
+        }
+        // Between two recordings, whole recordings differ.
+        until
+            .filter(|[before, after]| after - before < BETWEEN_RECORDINGS)
+            .map(|[_, after]| after)
     }
 
     /// The same difference as a load of positive mass, which the other recordings have if this one has a negative mass. The links of a
@@ -88,19 +164,21 @@ impl OwnLoad {
 
     /// Whether the last recordings have more of it than the first ones: a load may have been picked up once.
     pub fn was_picked_up(&self, motions: &Motions) -> bool {
-        let sources = motions.sources.len();
-        let mut order: Vec<usize> = (0..sources).collect();
-        let begins = |recording: &usize| {
-            let mut chunks = motions.chunks.iter().filter(|chunk| chunk.recording == *recording);
-            chunks.next().map_or(f64::INFINITY, |chunk| chunk.start)
-        };
-        order.sort_by(|a, b| begins(a).total_cmp(&begins(b)));
-        let has: Vec<bool> = order
+        self.changed_once(motions) && self.has_first(motions) != (self.load[0] > 0.0)
+    }
+
+    /// Whether the first recordings have it and the last ones do not, or the other way round.
+    fn changed_once(&self, motions: &Motions) -> bool {
+        let has: Vec<bool> = in_order(motions)
             .iter()
             .map(|recording| self.recordings.contains(recording))
             .collect();
-        let is_once = has.windows(2).filter(|pair| pair[0] != pair[1]).count() == 1;
-        is_once && has.last() == Some(&(self.load[0] > 0.0))
+        has.windows(2).filter(|pair| pair[0] != pair[1]).count() == 1
+    }
+
+    /// Whether the first recording in time has it.
+    fn has_first(&self, motions: &Motions) -> bool {
+        self.recordings.contains(&in_order(motions)[0])
     }
 
     /// Standard deviations for the ten inertial parameters of such a load in a background.
@@ -116,18 +194,29 @@ impl OwnLoad {
     }
 }
 
-/// The solution in which as many of the `recordings` have a load of their own as it explains.
-fn grown(normal: &LoadEquations, parts: &[Part], variances: &Variances, recordings: usize) -> Solution {
+/// The recordings in the order of time.
+fn in_order(motions: &Motions) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..motions.sources.len()).collect();
+    let begins = |recording: &usize| {
+        let mut chunks = motions.chunks.iter().filter(|chunk| chunk.recording == *recording);
+        chunks.next().map_or(f64::INFINITY, |chunk| chunk.start)
+    };
+    order.sort_by(|a, b| begins(a).total_cmp(&begins(b)));
+    order
+}
+
+/// The solution in which as many of the `stretches` have a load of their own as it explains.
+fn grown(normal: &LoadEquations, parts: &[Part], variances: &Variances, stretches: usize) -> Solution {
     let mut now = normal.alone();
-    while now.recordings.len() + 1 < recordings {
-        let with = |recording: usize| [now.recordings.as_slice(), &[recording]].concat();
-        let others = (0..recordings).filter(|recording| !now.recordings.contains(recording));
-        let trials = others.filter_map(|recording| Some((recording, normal.with_load(&with(recording))?)));
-        let Some((recording, next)) = trials.max_by(|(_, a), (_, b)| a.gain.total_cmp(&b.gain)) else {
+    while now.stretches.len() + 1 < stretches {
+        let with = |stretch: usize| [now.stretches.as_slice(), &[stretch]].concat();
+        let others = (0..stretches).filter(|stretch| !now.stretches.contains(stretch));
+        let trials = others.filter_map(|stretch| Some((stretch, normal.with_load(&with(stretch))?)));
+        let Some((stretch, next)) = trials.max_by(|(_, a), (_, b)| a.gain.total_cmp(&b.gain)) else {
             break;
         };
         let residual = |solution: &Solution, in_one: bool| -> f64 {
-            let counted = parts.iter().filter(|part| !in_one || part.recording == recording);
+            let counted = parts.iter().filter(|part| !in_one || part.stretch == stretch);
             counted.map(|part| part.misfit(variances, solution)).sum()
         };
         let explains = |in_one: bool, least: f64| residual(&next, in_one) < (1.0 - least) * residual(&now, in_one);

@@ -144,7 +144,7 @@ impl Study {
         if let (Some(load), None) = (&own_load, motions.changed_at) {
             let mut data = self.data;
             for &recording in &load.recordings {
-                data.motions.sources[recording].has_own_load = true;
+                data.motions.sources[recording].own_load_until = load.until.unwrap_or(f64::INFINITY);
             }
             self = Self::with(data, options, Some(&load.prior()));
         }

@@ -1,6 +1,6 @@
 //! Suggests candidates from the residual of a selection: contacts, ripples, sinusoids in time, onsets.
 
-use effects::arm::{ExternalContact, contact_columns, contact_window};
+use effects::arm::{ExternalContact, Payload, contact_columns, contact_window};
 use effects::drive::{TorqueRipple, ripple_columns};
 use effects::unmodelled::{Periodic, periodic_columns};
 use effects::{EffectKind, Term};
@@ -50,6 +50,8 @@ impl Study {
             .collect();
         let of = |kind: &'static dyn EffectKind| Hypothesis::of(kind);
         let mut new = scan::onsets(&self.data, &self.table, &selected.fit.weights, &times, &residual);
+        // Where the background has a load of some recordings, a part of the same change would be a payload.
+        new.retain(|(hypothesis, ..)| self.own_load.is_none() || !hypothesis.is(&Payload));
         for (from, to) in windows {
             for round in [false, true] {
                 new.push((of(&ExternalContact), None, contact_columns(from, to, round)));

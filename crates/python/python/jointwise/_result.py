@@ -171,7 +171,9 @@ class DifferentLoad:
     """A load at the tip that only some of the recordings have."""
 
     recordings: tuple[str, ...]
-    """These recordings, at most half of all."""
+    """These recordings: at most half of all, or those that begin before `until`."""
+    until: Optional[float]
+    """The time at which the load was put down within the last of them (s, on their common clock); `None` if they have it to their ends."""
     more_than_others: Parameter
     """The mass that they have more than the others; negative if they have less."""
 
@@ -260,7 +262,7 @@ class Diagnosis:
             changed=None if changed is None else tuple(changed),
             different_load=None
             if load is None
-            else DifferentLoad(tuple(load["recordings"]), _parameter(load["more_than_others"])),
+            else DifferentLoad(tuple(load["recordings"]), load.get("until"), _parameter(load["more_than_others"])),
             constant_torques=_frozen({joint: _parameter(of) for joint, of in report.get("constant_torques", {}).items()}),
             notes=notes,
             _outcome=outcome,

@@ -1,4 +1,6 @@
-//! The normal equations of one arm for all recordings, with and without a load that only some of them have.
+//! The normal equations of one arm for all recordings, with and without a load that only some stretches of them have.
+
+use std::ops::Range;
 
 use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
@@ -17,11 +19,89 @@ pub const LOAD: usize = 4;
 /// Coulomb friction, viscous friction and offset of a joint.
 const DRIVE: usize = 3;
 
-/// The inner products of one joint in one recording, over its rows in motion and those at rest, in pieces of evidence.
+/// The columns of one joint.
+struct Columns<'a> {
+    /// The unknowns that they belong to: inertial parameters, then friction.
+    unknowns: Vec<usize>,
+    columns: Vec<&'a Vec<f64>>,
+    /// The number of inertial parameters.
+    inertials: usize,
+    /// The first unknown of the drive, whose last one is a constant torque.
+    drive: usize,
+    torque: &'a Vec<f64>,
+    moving: &'a Vec<bool>,
+    resting: Vec<bool>,
+}
+
+impl<'a> Columns<'a> {
+    fn new(data: &Data, table: &'a Table, joint: usize) -> Self {
+        let dof = data.motions.dof;
+        let this = &table.joints[joint];
+        let column = |term: &Term| {
+            let number = table.terms.iter().position(|known| known == term)?;
+            Some(&this.x[table.place[joint][number]?])
+        };
+        let inertial = |number: usize| Term::about(&INERTIAL_PARAMETER, number / PER_LINK).of(number % PER_LINK);
+        let friction = [Term::on(&SIGN, joint), Term::on(&VELOCITY, joint)];
+        let drive = PER_LINK * dof + DRIVE * joint;
+        let links = (0..PER_LINK * dof).map(|number| (number, column(&inertial(number))));
+        let friction = (0..2).map(|k| (drive + k, column(&friction[k])));
+        let (unknowns, columns): (Vec<usize>, Vec<&Vec<f64>>) = links
+            .chain(friction)
+            .filter_map(|(unknown, column)| Some((unknown, column?)))
+            .unzip();
+        let mut resting = vec![false; this.y.len()];
+        for row in data.resting_rows(joint) {
+            resting[row] = !this.moving[row];
+        }
+        Self {
+            inertials: unknowns.iter().filter(|&&unknown| unknown < drive).count(),
+            unknowns,
+            columns,
+            drive,
+            torque: &this.y,
+            moving: &this.moving,
+            resting,
+        }
+    }
+
+    /// By how much the load of `solution` reduces the square of the residual of `row`, over its variance.
+    fn gain(&self, row: usize, variances: [f64; 2], solution: &Solution) -> f64 {
+        let (used, variance) = match (self.moving[row], self.resting[row]) {
+            (true, _) => (self.columns.len(), variances[0]),
+            (_, true) => (self.inertials, variances[1]),
+            _ => return 0.0,
+        };
+        let (mut left, mut load) = (self.torque[row] - solution.common[self.drive + DRIVE - 1], 0.0);
+        for (&unknown, column) in self.unknowns.iter().zip(&self.columns).take(used) {
+            left -= solution.common[unknown] * column[row];
+            if (solution.last..solution.last + LOAD).contains(&unknown) {
+                load += solution.load[unknown - solution.last] * column[row];
+            }
+        }
+        (left.powi(2) - (left - load).powi(2)) / variance
+    }
+}
+
+/// By how much the load of `solution` reduces the squares of the residuals on each row, if it acts there.
+pub fn gains(data: &Data, table: &Table, variances: &Variances, solution: &Solution) -> Vec<f64> {
+    let columns: Vec<Columns<'_>> = (0..data.motions.dof)
+        .map(|joint| Columns::new(data, table, joint))
+        .collect();
+    let of_row = |row: usize| -> f64 {
+        let joints = columns.iter().zip(&variances.0);
+        joints
+            .map(|(joint, variances)| joint.gain(row, *variances, solution))
+            .sum()
+    };
+    (0..table.len()).map(of_row).collect()
+}
+
+/// The inner products of one joint in one stretch of a recording, over its rows in motion and those at rest, in pieces of evidence.
 pub struct Part {
     joint: usize,
-    /// The recording.
-    pub recording: usize,
+    /// The stretch.
+    pub stretch: usize,
     /// The unknowns that act on the joint: inertial parameters, then its drive.
     unknowns: Vec<usize>,
     /// Inner products of their columns and the torque, which is last; `[in motion, at rest]`.
@@ -30,36 +110,25 @@ pub struct Part {
 }
 
 impl Part {
-    /// The parts of `joint`, one per recording.
-    pub fn of_joint(data: &Data, table: &Table, joint: usize) -> Vec<Self> {
-        let dof = data.motions.dof;
-        let this = &table.joints[joint];
-        let column = |term: &Term| {
-            let number = table.terms.iter().position(|known| known == term)?;
-            Some(&this.x[table.place[joint][number]?])
-        };
-        let inertial = |number: usize| Term::about(&INERTIAL_PARAMETER, number / PER_LINK).of(number % PER_LINK);
-        let drive = [Term::on(&SIGN, joint), Term::on(&VELOCITY, joint)];
-        let first = PER_LINK * dof + DRIVE * joint;
-        let links = (0..PER_LINK * dof).map(|number| (number, column(&inertial(number))));
-        let drive = (0..2).map(|k| (first + k, column(&drive[k])));
-        let (unknowns, columns): (Vec<usize>, Vec<&Vec<f64>>) = links
-            .chain(drive)
-            .filter_map(|(unknown, column)| Some((unknown, column?)))
-            .unzip();
-        let friction = unknowns.iter().filter(|&&unknown| unknown >= first).count();
-        let inertials = columns.len() - friction;
-
-        let y = &this.y;
-        let mut resting = vec![false; y.len()];
-        for row in data.resting_rows(joint) {
-            resting[row] = !this.moving[row];
-        }
-        let part = |recording: usize| {
+    /// The parts of `joint`, one for each of the `stretches` of rows.
+    pub fn of_joint(data: &Data, table: &Table, joint: usize, stretches: &[Range<usize>]) -> Vec<Self> {
+        let of_joint = Columns::new(data, table, joint);
+        let Columns {
+            unknowns,
+            columns,
+            inertials,
+            drive,
+            torque: y,
+            ..
+        } = &of_joint;
+        let friction = columns.len() - inertials;
+        let part = |stretch: usize| {
+            let range = &stretches[stretch];
+            let recording = table.rows.iter().position(|rows| rows.contains(&range.start));
+            let recording = recording.unwrap_or_default();
             let weight = data.seconds[recording] * evidence_rate(data.motions.tempo[joint]);
             let products = |is_counted: &[bool], friction: usize| {
-                let range = table.rows[recording].clone();
-                let rows: Vec<usize> = range.filter(|&row| is_counted[row]).collect();
+                let rows: Vec<usize> = range.clone().filter(|&row| is_counted[row]).collect();
                 let values = DMatrix::from_fn(rows.len(), columns.len() + 2, |i, k| match columns.get(k) {
                     Some(column) if k < inertials + friction => column[rows[i]],
                     // At rest, the sign of the velocity is noise.
@@ -69,17 +138,17 @@ impl Part {
                 });
                 (weight * values.tr_mul(&values), weight * rows.len() as f64)
             };
-            let (moving, rows_in_motion) = products(&this.moving, friction);
-            let (at_rest, rows_at_rest) = products(&resting, 0);
+            let (moving, rows_in_motion) = products(of_joint.moving, friction);
+            let (at_rest, rows_at_rest) = products(&of_joint.resting, 0);
             Self {
                 joint,
-                recording,
-                unknowns: unknowns.iter().copied().chain([first + DRIVE - 1]).collect(),
+                stretch,
+                unknowns: unknowns.iter().copied().chain([drive + DRIVE - 1]).collect(),
                 products: [moving, at_rest],
                 evidence: [rows_in_motion, rows_at_rest],
             }
         };
-        (0..table.rows.len()).map(part).collect()
+        (0..stretches.len()).map(part).collect()
     }
 
     /// The sums of squares of the residuals of `solution`, in motion and at rest.
@@ -129,12 +198,12 @@ impl Variances {
     }
 }
 
-/// The normal equations of one arm for all recordings, and what a load in each recording adds to them.
+/// The normal equations of one arm for all recordings, and what a load in each stretch adds to them.
 pub struct LoadEquations {
     right: DVector<f64>,
     /// The unknowns without a load.
     common: DVector<f64>,
-    /// One per recording: the products of the load with the other unknowns, with itself, and with the torque.
+    /// One per stretch: the products of the load with the other unknowns, with itself, and with the torque.
     loads: Vec<(DMatrix<f64>, DMatrix<f64>, DVector<f64>)>,
     /// N⁻¹ times the products of the load with the other unknowns.
     solved: Vec<DMatrix<f64>>,
@@ -142,13 +211,13 @@ pub struct LoadEquations {
     last: usize,
 }
 
-/// The unknowns, and the load with its recordings.
+/// The unknowns, and the load with its stretches.
 pub struct Solution {
     common: DVector<f64>,
     /// Its mass (kg) and first moments (kg m).
     pub load: DVector<f64>,
-    /// The recordings that have it.
-    pub recordings: Vec<usize>,
+    /// The stretches that have it.
+    pub stretches: Vec<usize>,
     last: usize,
     /// The reduction of half the sum of squares by the load (nats).
     pub gain: f64,
@@ -157,9 +226,9 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// The value of `unknown` in the recording of `part`.
+    /// The value of `unknown` in the stretch of `part`.
     fn of(&self, part: &Part, unknown: usize) -> f64 {
-        let has_load = self.recordings.contains(&part.recording) && (self.last..self.last + LOAD).contains(&unknown);
+        let has_load = self.stretches.contains(&part.stretch) && (self.last..self.last + LOAD).contains(&unknown);
         self.common[unknown] + if has_load { self.load[unknown - self.last] } else { 0.0 }
     }
 }
@@ -197,7 +266,7 @@ impl LoadEquations {
         parts: &[Part],
         variances: &Variances,
         background: &Background,
-        (dof, recordings): (usize, usize),
+        (dof, stretches): (usize, usize),
     ) -> Option<Self> {
         let (inertials, size) = (PER_LINK * dof, (PER_LINK + DRIVE) * dof);
         let last = inertials - PER_LINK;
@@ -210,12 +279,12 @@ impl LoadEquations {
                 DVector::zeros(LOAD),
             )
         };
-        let mut loads: Vec<_> = (0..recordings).map(|_| empty()).collect();
+        let mut loads: Vec<_> = (0..stretches).map(|_| empty()).collect();
         for part in parts {
             let [moving, resting] = variances.0[part.joint];
             let products = &part.products[0] / moving + &part.products[1] / resting;
             let torque = part.unknowns.len();
-            let (cross, own, load) = &mut loads[part.recording];
+            let (cross, own, load) = &mut loads[part.stretch];
             for (a, &i) in part.unknowns.iter().enumerate() {
                 right[i] += products[(a, torque)];
                 for (b, &k) in part.unknowns.iter().enumerate() {
@@ -256,30 +325,30 @@ impl LoadEquations {
         })
     }
 
-    /// The solution with the same load in all recordings.
+    /// The solution with the same load in all stretches.
     pub fn alone(&self) -> Solution {
         Solution {
             common: self.common.clone(),
             load: DVector::zeros(LOAD),
-            recordings: Vec::new(),
+            stretches: Vec::new(),
             last: self.last,
             gain: 0.0,
             deviations: [0.0; LOAD],
         }
     }
 
-    /// The solution in which `recordings` have an additional load.
-    pub fn with_load(&self, recordings: &[usize]) -> Option<Solution> {
+    /// The solution in which `stretches` have an additional load.
+    pub fn with_load(&self, stretches: &[usize]) -> Option<Solution> {
         let mut own = DMatrix::identity(LOAD, LOAD) * LOAD_PRECISION;
         let mut right = DVector::zeros(LOAD);
         let mut solved = DMatrix::zeros(self.right.len(), LOAD);
         let mut cross = DMatrix::zeros(self.right.len(), LOAD);
-        for &recording in recordings {
-            let (with_others, with_itself, torque) = &self.loads[recording];
+        for &stretch in stretches {
+            let (with_others, with_itself, torque) = &self.loads[stretch];
             cross += with_others;
             own += with_itself;
             right += torque;
-            solved += &self.solved[recording];
+            solved += &self.solved[stretch];
         }
         right -= solved.tr_mul(&self.right);
         own -= cross.tr_mul(&solved);
@@ -290,7 +359,7 @@ impl LoadEquations {
             gain: 0.5 * right.dot(&load),
             deviations: std::array::from_fn(|k| inverse[(k, k)].sqrt()),
             load,
-            recordings: recordings.to_vec(),
+            stretches: stretches.to_vec(),
             last: self.last,
         })
     }
