@@ -67,6 +67,16 @@ impl Chunk {
         row * self.stride + self.kernel.reach()
     }
 
+    /// The share of each row, through the second filter, that is before a time (s).
+    pub fn shares_before(&self, time: f64) -> Vec<f64> {
+        let is_before = |tick: usize| f64::from(u8::from(self.time(tick) < time));
+        let (first, last) = (is_before(0), is_before(self.ticks().saturating_sub(1)));
+        if first.to_bits() == last.to_bits() {
+            return vec![first; self.rows()];
+        }
+        self.filter(&(0..self.ticks()).map(is_before).collect::<Vec<f64>>())
+    }
+
     /// A signal on the ticks, through the second filter.
     pub fn filter(&self, signal: &[f64]) -> Vec<f64> {
         self.kernel.smooth(signal, self.stride)

@@ -254,7 +254,7 @@ fn different(load: &OwnLoad, sources: &[SourceRecording]) -> DifferentLoad {
     let (value, half) = (load.load[0], NORMAL_95 * load.deviations[0]);
     DifferentLoad {
         recordings: names.collect(),
-        until: load.until,
+        until: load.until.map(|until| (until * 1e3).round() / 1e3),
         more_than_others: Parameter {
             value,
             ci95: [value - half, value + half],

@@ -302,10 +302,9 @@ impl Table {
                 } else if term.is(&OWN_LOAD) {
                     let k = term.of[0] * bodies::PER_LINK + term.of[1];
                     for (chunk, inertial) in motions.chunks.iter().zip(&inertial) {
-                        let until = motions.sources[chunk.recording].own_load_until;
-                        let has_load = |row: usize| chunk.time(chunk.tick_of(row)) < until;
-                        let values = inertial[joint][k].iter().enumerate();
-                        column.extend(values.map(|(row, value)| if has_load(row) { *value } else { 0.0 }));
+                        let shares = chunk.shares_before(motions.sources[chunk.recording].own_load_until);
+                        let values = inertial[joint][k].iter().zip(shares);
+                        column.extend(values.map(|(value, share)| share * value));
                     }
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
