@@ -16,7 +16,7 @@ use crate::search::study::Study;
 use crate::thresholds::{CUTOFF, FAR_LESS};
 
 /// How well the model of an arm explains recordings, with plain friction, drive inertia and a constant torque at every joint, and
-/// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says, and of a load at
+/// with a background of inertial parameters and torque constants that differ from the URDF as far as the evidence says, and with a load at
 /// the tip that only some of the recordings have.
 #[derive(Clone, Debug)]
 pub struct Agreement {

@@ -110,10 +110,28 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
     assert_load(&diagnosis, &["a", "b"], 0.8);
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
 
-    // One that is put down within a recording.
+    // The later recordings are fewer than those with the load.
+    let diagnosis = diagnosed([0.8, 0.8, 0.8, 0.0], |_, _| true, nothing);
+    assert_load(&diagnosis, &["a", "b", "c"], 0.8);
+    assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+}
+
+/// A load that is put down within a recording is found with the time.
+#[test]
+fn a_load_that_is_put_down_within_a_recording() {
+    for (end, recordings) in [
+        (start(1) + 7.0, &["a", "b"][..]),
+        (start(2) + 7.0, &["a", "b", "c"][..]),
+    ] {
+        put_down_at(end, recordings);
+    }
+}
+
+#[track_caller]
+fn put_down_at(end: f64, recordings: &[&str]) {
     let load = with_load(&trio(), 0.8);
     let put_down = |_: usize, motion: &Motion, tau: &mut [f64]| {
-        if motion.clock < start(1) + 7.0 {
+        if motion.clock < end {
             let [mut with, mut without] = [[0.0; 3]; 2];
             for (arm, tau) in [(&load, &mut with), (&trio(), &mut without)] {
                 arm.inverse_dynamics(&mut Workspace::new(arm), &motion.q, &motion.qd, &motion.qdd, tau);
@@ -122,14 +140,19 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
         }
     };
     let diagnosis = diagnosed([0.0; 4], |_, _| true, put_down);
-    assert_load(&diagnosis, &["a", "b"], 0.8);
+    assert_load(&diagnosis, recordings, 0.8);
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
     let until = diagnosis.report.different_load.and_then(|load| load.until);
     assert!(
-        until.is_some_and(|until| (until - start(1) - 7.0).abs() < 0.1),
-        "{until:?}"
+        until.is_some_and(|until| (until - end).abs() < 0.1),
+        "{until:?}, not {end}"
     );
+}
 
+/// A push is no load.
+#[test]
+fn a_push_is_not_reported_as_another_load() {
+    let is_reported = |diagnosis: &Diagnosis| diagnosis.report.different_load.is_some();
     let push = |variant: usize, motion: &Motion, tau: &mut [f64]| {
         if variant == 1 && (5.0..7.0).contains(&motion.time) {
             tau[SHOULDER] += 6.0;

@@ -219,11 +219,16 @@ pub fn different_load(report: &Report) -> Option<String> {
     } else {
         " This is taken into account. To name what else differs between them, diagnose each group alone, or give one of them with --before."
     };
-    let until = load.until.map_or(String::new(), |until| {
-        format!(", until {until:.2} s on their common clock")
-    });
+    if let Some(until) = load.until {
+        return Some(format!(
+            "{} {} made with {} {word} at the tip than later, until {until:.2} s on the common clock. This is taken into account.",
+            list(&names),
+            if with == 1 { "was" } else { "were" },
+            numbers::with_interval("mass", &size),
+        ));
+    }
     Some(format!(
-        "{} {} made with {} {word} at the tip than the other {others}{until}.{advice}",
+        "{} {} made with {} {word} at the tip than the other {others}.{advice}",
         list(&names),
         if with == 1 { "was" } else { "were" },
         numbers::with_interval("mass", &size),

@@ -10,10 +10,10 @@ use crate::data::input::Input;
 use crate::data::measure;
 use crate::data::motion::Motions;
 use crate::data::rigid::Rigid;
-use crate::data::statistics::{mean_square, quantile_of_sorted};
+use crate::data::statistics::{deviation, mean_square, quantile_of_sorted};
 use crate::thresholds::{
     CHANNEL_FOLDS, CHANNEL_LIMITS, CHANNEL_LOADS, CHANNEL_MOVES, CHANNEL_RIDGE, CHANNEL_STEP, COARSE_CHANNEL,
-    COARSE_PART, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
+    COARSE_PART, EXPLAINED_STRETCHES, EXPLAINS_THE_LIMITED, FAR_TOO_SMALL, IDLE_CHANNEL, LEAST_CHANNEL_ROWS, UNRELATED,
 };
 
 /// Why a channel holds no torque.
@@ -141,7 +141,7 @@ impl Rows {
             let quarter = rows / 4;
             if quarter >= LEAST_CHANNEL_ROWS {
                 stretches.extend((0..4).map(|k| start + k * quarter..start + (k + 1) * quarter));
-            } else {
+            } else if rows >= LEAST_CHANNEL_ROWS {
                 stretches.push(start..start + rows);
             }
             start += rows;
@@ -181,15 +181,16 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
     };
     // A load that the arm holds in some of the recordings only, or a part of one, is in no sum of the columns over all rows.
     let is_explained_in_stretches = || {
-        let error = |rows_of: Range<usize>| {
+        let judged = |rows_of: Range<usize>| {
             let part = |column: &&Vec<f64>| column[rows_of.clone()].to_vec();
             let columns: Vec<Vec<f64>> = all.iter().map(part).collect();
             let columns: Vec<&Vec<f64>> = columns.iter().collect();
-            cross_validated(&columns, &rows.torque[rows_of])
+            let torque = &rows.torque[rows_of];
+            deviation(torque.iter()) > 0.0 && cross_validated(&columns, torque) < EXPLAINS_THE_LIMITED
         };
-        let mut errors: Vec<f64> = rows.stretches().into_iter().map(error).collect();
-        errors.sort_by(f64::total_cmp);
-        quantile_of_sorted(&errors, 0.5) < EXPLAINS_THE_LIMITED
+        let stretches: Vec<bool> = rows.stretches().into_iter().map(judged).collect();
+        let explained = stretches.iter().filter(|is_explained| **is_explained).count();
+        explained as f64 > EXPLAINED_STRETCHES * stretches.len() as f64
     };
     (error > UNRELATED && !is_limited() && !is_explained_in_stretches())
         .then(|| Why::Unrelated((1.0 - error * error).max(0.0)))

@@ -92,7 +92,7 @@ pub struct SourceRecording {
     pub held_out: bool,
     /// The duration that is used and the whole one (s), if it is not used whole.
     pub part: Option<[f64; 2]>,
-    /// The time until which the tip has another load than in most recordings (s): −∞ if it does not, ∞ to the end of the recording.
+    /// The time until which the tip has the load of some recordings (s): −∞ if it does not have it, ∞ if it has it to the end.
     pub own_load_until: f64,
     /// The time of the diagnosis' clock minus that of the recording's own (s).
     pub shift: f64,

@@ -18,7 +18,7 @@ use crate::regression::background::{Background, Prior};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
 use crate::regression::table::Table;
-use crate::thresholds::{BETWEEN_RECORDINGS, LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_SIZE};
+use crate::thresholds::{LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_SIZE};
 
 /// The number of times that the variances of the joints are computed anew.
 const REWEIGHTINGS: usize = 4;
@@ -27,7 +27,7 @@ const SPLITS: usize = 3;
 
 /// A load at the tip that only some of the recordings have.
 pub struct OwnLoad {
-    /// The recordings, at most half of all, in ascending order.
+    /// The recordings, in ascending order: at most half of all, or those from before it was put down on a common clock.
     pub recordings: Vec<usize>,
     /// The time at which it was put down within the last of them (s, the clock of the diagnosis); `None` if they have it to their ends.
     pub until: Option<f64>,
@@ -91,72 +91,74 @@ impl OwnLoad {
             return None;
         }
         let mut group = found.stretches.clone();
-        group.sort_unstable();
-        // The smaller group is the one that differs; of two halves, that with more mass, and of two sides of a time, that before it.
-        let (size, all) = (group.len(), stretches.len());
-        let differs = match split {
-            Some(_) => {
-                let first = &table.rows[in_order(&data.motions)[0]];
-                let stretch = stretches.iter().position(|stretch| stretch.start == first.start);
-                stretch.is_some_and(|stretch| group.contains(&stretch))
-            }
-            None => 2 * size < all || 2 * size == all && found.load[0] > 0.0,
-        };
-        let sign = if differs { 1.0 } else { -1.0 };
-        let has_load = |rows: &Range<usize>| {
+        let has_load = |recording: &usize| {
+            let rows = &table.rows[*recording];
             let stretch = stretches.iter().position(|stretch| stretch.start == rows.start);
-            stretch.is_some_and(|stretch| group.contains(&stretch) == differs)
+            !rows.is_empty() && stretch.is_some_and(|stretch| group.contains(&stretch))
         };
-        let load = Self {
-            recordings: (0..table.rows.len())
-                .filter(|&recording| has_load(&table.rows[recording]))
-                .collect(),
-            until: split,
-            load: std::array::from_fn(|k| sign * found.load[k]),
+        let mut load = Self {
+            recordings: (0..table.rows.len()).filter(has_load).collect(),
+            until: None,
+            load: std::array::from_fn(|k| found.load[k]),
             deviations: found.deviations,
         };
-        let put_down = load.put_down(data, || {
-            let mut gains = gains(data, table, &variances, &found);
-            gains.iter_mut().for_each(|gain| *gain *= sign);
-            gains
-        });
-        Some((load, put_down))
-    }
-
-    /// The time within a recording at which a load seems to be put down (s) that the first recordings have on a common clock; `gains` is
-    /// what it explains on each row.
-    fn put_down(&self, data: &Data, gains: impl FnOnce() -> Vec<f64>) -> Option<f64> {
         let motions = &data.motions;
-        if !motions.one_clock || !self.changed_once(motions) || self.load[0] < 0.0 || !self.has_first(motions) {
-            return None;
-        }
-        let times = motions.row_times();
-        let gains = gains();
-        let (mut sum, mut most, mut until) = (0.0, 0.0, None);
-        let mut order: Vec<usize> = (0..times.len()).collect();
-        order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
-        for pair in order.windows(2) {
-            sum += gains[pair[0]];
-            if sum > most {
-                (most, until) = (sum, Some([times[pair[0]], times[pair[1]]]));
+        let was_put_down = motions.one_clock && load.changed_once(motions) && !load.was_picked_up(motions);
+        // The smaller group is the one that differs; of two halves, that with more mass, and of two sides of a time, that before it.
+        let (size, all) = (group.len(), stretches.len());
+        let mut sign = 1.0;
+        if let Some(split) = split {
+            let is_before = |stretch: &usize| times[stretches[*stretch].start] < split;
+            if !(0..all).filter(is_before).all(|stretch| group.contains(&stretch)) {
+                sign = -1.0;
+                group = (0..all).filter(|stretch| !group.contains(stretch)).collect();
             }
+            if !(0..all).all(|stretch| is_before(&stretch) == group.contains(&stretch)) || sign * load.load[0] < 0.0 {
+                return None;
+            }
+            let begins_before = |recording: &usize| {
+                let rows = &table.rows[*recording];
+                !rows.is_empty() && times[rows.start] < split
+            };
+            load = Self {
+                recordings: (0..table.rows.len()).filter(begins_before).collect(),
+                until: Some(split),
+                load: load.load.map(|parameter| sign * parameter),
+                ..load
+            };
+        } else if was_put_down && load.load[0] < 0.0
+            || !was_put_down && !(2 * size < all || 2 * size == all && load.load[0] > 0.0)
+        {
+            sign = -1.0;
+            load = load.of_the_others(table.rows.len());
         }
-        // Between two recordings, whole recordings differ.
-        until
-            .filter(|[before, after]| after - before < BETWEEN_RECORDINGS)
-            .map(|[_, after]| after)
+        let until = (split.is_some() || was_put_down)
+            .then(|| {
+                let mut gains = gains(data, table, &variances, &found);
+                gains.iter_mut().for_each(|gain| *gain *= sign);
+                put_down(table, &times, &gains)
+            })
+            .flatten();
+        Some((load, until))
     }
 
     /// The same difference as a load of positive mass, which the other recordings have if this one has a negative mass. The links of a
     /// URDF are nearer to an arm without a load.
     pub fn of_more_mass(self, recordings: usize) -> Self {
         if self.load[0] > 0.0 {
-            return self;
+            self
+        } else {
+            self.of_the_others(recordings)
         }
+    }
+
+    /// The same difference as a load of the other recordings.
+    fn of_the_others(self, recordings: usize) -> Self {
         Self {
             recordings: (0..recordings)
                 .filter(|recording| !self.recordings.contains(recording))
                 .collect(),
+            until: None,
             load: self.load.map(|parameter| -parameter),
             ..self
         }
@@ -192,6 +194,23 @@ impl OwnLoad {
             }
         })
     }
+}
+
+/// The time within a recording at which a load is put down (s), if it explains these `gains` on each row of its own; `None` if it is put
+/// down between two recordings.
+fn put_down(table: &Table, times: &[f64], gains: &[f64]) -> Option<f64> {
+    let mut order: Vec<usize> = (0..times.len()).collect();
+    order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
+    let (mut sum, mut most, mut until) = (0.0, 0.0, None);
+    for pair in order.windows(2) {
+        sum += gains[pair[0]];
+        if sum > most {
+            (most, until) = (sum, Some([pair[0], pair[1]]));
+        }
+    }
+    let [before, after] = until?;
+    let recording = |row: usize| table.rows.iter().position(|rows| rows.contains(&row));
+    (recording(before) == recording(after)).then(|| 0.5 * (times[before] + times[after]))
 }
 
 /// The recordings in the order of time.

@@ -10,7 +10,7 @@ use crate::search::candidate::Hypothesis;
 use crate::search::problem::Selection;
 use crate::search::scan;
 use crate::search::study::Study;
-use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES};
+use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES, OF_THE_SAME_LOAD};
 
 impl Study {
     /// Adds the candidates that the residual of `selected` suggests.
@@ -50,8 +50,15 @@ impl Study {
             .collect();
         let of = |kind: &'static dyn EffectKind| Hypothesis::of(kind);
         let mut new = scan::onsets(&self.data, &self.table, &selected.fit.weights, &times, &residual);
-        // Where the background has a load of some recordings, a part of the same change would be a payload.
-        new.retain(|(hypothesis, ..)| self.own_load.is_none() || !hypothesis.is(&Payload));
+        // A part of a load that was put down, which the background has, would be a payload.
+        let until = self.own_load.as_ref().and_then(|load| load.until);
+        let is_of_it = |term: &Term| {
+            let onset = term.onset();
+            onset
+                .zip(until)
+                .is_some_and(|(onset, until)| (onset - until).abs() < OF_THE_SAME_LOAD)
+        };
+        new.retain(|(hypothesis, _, terms)| !(hypothesis.is(&Payload) && terms.iter().any(is_of_it)));
         for (from, to) in windows {
             for round in [false, true] {
                 new.push((of(&ExternalContact), None, contact_columns(from, to, round)));

@@ -195,26 +195,33 @@ impl Torques {
         let side = |is_after: bool| (0..blocks.len()).filter(move |&block| blocks[block].is_after == is_after);
         // The sizes of a side are those whose torques are nearest to the torques of its stretches. Some terms have no torque, and the sizes
         // of others may be determined together only.
-        let mean = |is_after: bool| {
-            let mut all = side(is_after).fold(DMatrix::zeros(terms, terms), |sum, block| sum + &grams[block]);
-            let torques = side(is_after).fold(DVector::zeros(terms), |sum, block| sum + &grams[block] * &sizes[block]);
-            let acts = all.trace() > 0.0;
+        let ridged = |gram: &DMatrix<f64>| {
+            let mut gram = gram.clone();
             for term in 0..terms {
-                let energy = all[(term, term)];
-                all[(term, term)] += if energy > 0.0 { COLLINEAR * energy } else { 1.0 };
+                let energy = gram[(term, term)];
+                gram[(term, term)] += if energy > 0.0 { COLLINEAR * energy } else { 1.0 };
             }
-            Some(all.cholesky()?.solve(&torques)).filter(|_| acts)
+            gram.cholesky()
         };
-        let means = [mean(false)?, mean(true)?];
-        let (mut within, mut change) = (0.0, 0.0);
-        for (block, rows) in self.0.iter().enumerate() {
-            let own = usize::from(blocks[block].is_after);
-            for row in rows {
-                let torque = |of: &dyn Fn(usize) -> f64| (0..terms).map(|term| of(term) * row[term]).sum::<f64>();
-                within += torque(&|term| sizes[block][term] - means[own][term]).powi(2);
-                change += torque(&|term| means[1][term] - means[0][term]).powi(2);
-            }
+        let sides = [false, true].map(|is_after| {
+            let zero = (DMatrix::zeros(terms, terms), DVector::zeros(terms));
+            side(is_after).fold(zero, |(gram, torque), block| {
+                (gram + &grams[block], torque + &grams[block] * &sizes[block])
+            })
+        });
+        if sides.iter().any(|(gram, _)| gram.trace() <= 0.0) {
+            return None;
         }
+        let [before, after] = &sides;
+        let means = [ridged(&before.0)?.solve(&before.1), ridged(&after.0)?.solve(&after.1)];
+        let mut within = 0.0;
+        for (block, gram) in grams.iter().enumerate() {
+            let apart = &sizes[block] - &means[usize::from(blocks[block].is_after)];
+            within += apart.dot(&(gram * &apart));
+        }
+        // The parallel sum of the two sides: what only one of them determines is no change.
+        let change = &means[1] - &means[0];
+        let change = (&before.0 * &change).dot(&ridged(&(&before.0 + &after.0))?.solve(&(&after.0 * &change)));
         // The number of stretches with equal torques that would be worth as much.
         let number = |is_after: bool| {
             let of_blocks = || side(is_after).map(|block| grams[block].trace());
@@ -222,7 +229,7 @@ impl Torques {
         };
         let (before, after) = (number(false), number(true));
         let freedom = (before + after - 2.0).max(0.0);
-        Some(change * before * after / (before + after).powi(2) * freedom / within)
+        Some(change * freedom / within)
     }
 }
 
@@ -269,6 +276,28 @@ mod tests {
         let together = ratio([0.0; 4]);
         let apart = ratio([30.0, -20.0, 50.0, 10.0]);
         assert!((apart / together - 1.0).abs() < 1e-4, "{apart}, not {together}");
+    }
+
+    /// Before the change, only the sum of two sizes is determined. They did not change.
+    #[test]
+    fn what_one_side_does_not_determine_is_no_change() {
+        let blocks: Vec<Block> = (0..4)
+            .map(|block| Block {
+                start: f64::from(block),
+                is_after: block >= 2,
+            })
+            .collect();
+        let sum = vec![vec![1.0, 1.0]; 10];
+        let each: Vec<Vec<f64>> = (0..10)
+            .map(|row| vec![f64::from(row % 2), f64::from(1 - row % 2)])
+            .collect();
+        let torques = Torques(vec![sum.clone(), sum, each.clone(), each]);
+        let ratio = |before: [f64; 2]| {
+            let sizes = [before, [0.9, 0.1], [1.1, 0.0], [0.9, 0.1]].map(|sizes| sizes.to_vec());
+            torques.over_variation(&sizes, &blocks).expect("both sides have torque")
+        };
+        let found = [ratio([1.0, 0.1]), ratio([-4.0, 5.1])];
+        assert!(found.iter().all(|ratio| *ratio < 10.0), "{found:?}");
     }
 
     #[test]

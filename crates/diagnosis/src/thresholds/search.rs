@@ -56,8 +56,9 @@ pub const SETTLED: f64 = 0.002;
 pub const MOST_SETTLING: usize = 6;
 /// The gain that an exchange of a candidate for another must bring (nats). Source: first diagnosis.
 pub const SWAP_GAIN: f64 = 0.5;
-/// A load that was put down between two rows that are farther apart than this was put down between two recordings (s). Source: choice.
-pub const BETWEEN_RECORDINGS: f64 = 1.0;
+/// A payload that seems to set in within this time of a load that was put down is a part of it (s). Source: a simulated SCARA, on which
+/// both were 0.02 s apart.
+pub const OF_THE_SAME_LOAD: f64 = 1.0;
 /// In the search for another load of some recordings, the least standard deviation of a residual, as a part of that of the
 /// joint's torque.
 pub const LOAD_FLOOR: f64 = 0.01;

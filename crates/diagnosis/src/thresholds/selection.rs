@@ -69,8 +69,8 @@ pub const CLEAR_DRIVE: f64 = 20.0;
 /// The least share of an effect in the joint's torque in the final fit, where the background may have taken most of it.
 pub const LEAST_FINAL_SHARE: f64 = 0.01;
 /// The evidence for a torque on one joint alone, against a coupling of it with another joint, with which the coupling is refused
-/// (nats). Source: 19 couplings of three proofs have 3 nats or more against it; a torque on one joint that follows the speed of
-/// another has 19 nats for it.
+/// (nats). Source: of 19 couplings of three proofs, the evidence is at least 3 nats against it; a torque on one joint that
+/// follows the speed of another has 19 nats for it. Between, neither can be told from the other, and the probability is one half.
 pub const AGAINST_BOTH: f64 = 3.0;
 /// The evidence of an effect, beside the background that is best without it, with which it is named although its main
 /// parameter may be that of no effect (nats). Source: simulated cases with wrong URDFs, in which effects of up to 1300

@@ -31,7 +31,6 @@ static SPEC: Spec = Spec {
         Parameter::new("sense", Quantity::Ratio).or(1.0).remarked(""),
     ],
     main: &["viscous", "inertia", "coulomb"],
-
     is_beyond_the_drive: true,
     against: Against::OtherSpeed,
     ..Spec::EMPTY

@@ -152,7 +152,7 @@ const ACTS: f64 = 0.02;
 /// limit of 0.4 % of the largest torque was named, although 60 % of the torques are above it.
 const ACTS_OF_LIMIT: f64 = 0.5;
 
-/// The part of the moving rows on which the first column differs from zero.
+/// The part of the moving rows on which the limit acts.
 fn acting(fitted: &dyn Fitted) -> f64 {
     let Some(x) = fitted.column(0) else { return 0.0 };
     let largest = x.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
