@@ -106,6 +106,11 @@ impl OwnLoad {
         let was_put_down = motions.one_clock && load.changed_once(motions) && !load.was_picked_up(motions);
         // The smaller group is the one that differs; of two halves, that with more mass, and of two sides of a time, that before it.
         let (size, all) = (group.len(), stretches.len());
+        let is_of_the_others = if was_put_down {
+            load.load[0] < 0.0
+        } else {
+            2 * size > all || 2 * size == all && load.load[0] < 0.0
+        };
         let mut sign = 1.0;
         if let Some(split) = split {
             let is_before = |stretch: &usize| times[stretches[*stretch].start] < split;
@@ -126,9 +131,7 @@ impl OwnLoad {
                 load: load.load.map(|parameter| sign * parameter),
                 ..load
             };
-        } else if was_put_down && load.load[0] < 0.0
-            || !was_put_down && !(2 * size < all || 2 * size == all && load.load[0] > 0.0)
-        {
+        } else if is_of_the_others {
             sign = -1.0;
             load = load.of_the_others(table.rows.len());
         }
