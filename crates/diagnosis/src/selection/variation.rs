@@ -237,14 +237,18 @@ impl Torques {
 mod tests {
     use super::*;
 
+    /// Two stretches before and two after a change.
+    fn four_blocks() -> Vec<Block> {
+        let block = |block: i32| Block {
+            start: f64::from(block),
+            is_after: block >= 2,
+        };
+        (0..4).map(block).collect()
+    }
+
     /// Two stretches before and two after a change, with one term whose torque is one on all rows.
     fn ratio(sizes: [f64; 4]) -> Option<f64> {
-        let blocks: Vec<Block> = (0..4)
-            .map(|block| Block {
-                start: f64::from(block),
-                is_after: block >= 2,
-            })
-            .collect();
+        let blocks = four_blocks();
         let torques = Torques(vec![vec![vec![1.0]; 10]; 4]);
         torques.over_variation(&sizes.map(|size| vec![size]), &blocks)
     }
@@ -259,12 +263,7 @@ mod tests {
     /// Of two terms with equal torques, the sizes are determined together only; a third has no torque.
     #[test]
     fn what_the_stretches_do_not_determine_is_no_variation() {
-        let blocks: Vec<Block> = (0..4)
-            .map(|block| Block {
-                start: f64::from(block),
-                is_after: block >= 2,
-            })
-            .collect();
+        let blocks = four_blocks();
         let rows: Vec<Vec<Vec<f64>>> = (1..=4).map(|block| vec![vec![1.0, 1.0, 0.0]; 10 * block]).collect();
         let sums = [1.0, 1.2, 2.0, 2.4];
         let ratio = |apart: [f64; 4]| {
@@ -281,12 +280,7 @@ mod tests {
     /// Before the change, only the sum of two sizes is determined. They did not change.
     #[test]
     fn what_one_side_does_not_determine_is_no_change() {
-        let blocks: Vec<Block> = (0..4)
-            .map(|block| Block {
-                start: f64::from(block),
-                is_after: block >= 2,
-            })
-            .collect();
+        let blocks = four_blocks();
         let sum = vec![vec![1.0, 1.0]; 10];
         let each: Vec<Vec<f64>> = (0..10)
             .map(|row| vec![f64::from(row % 2), f64::from(1 - row % 2)])
