@@ -64,7 +64,9 @@ pub fn agreement(
         only: Some(OMITTED_BY_MOST.iter().flat_map(wanted).collect()),
         ..Options::default()
     };
-    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options).with_any_own_load(&options);
+    // What is compared needs no derivatives of the model, but known effects may.
+    let data = Data::before_a_correction(arm, inputs, &options, !known.is_empty())?;
+    let mut study = Study::new(data, &options).with_any_own_load(&options);
     // Forms of friction in the background have no sign, and may drive a joint.
     study.stated.is_friction_plain = true;
     let is_plain = |&candidate: &usize| study.always_acts(candidate);
@@ -103,7 +105,8 @@ pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agree
         known: known.to_vec(),
         ..Options::default()
     };
-    let mut study = Study::new(Data::before_a_correction(arm, inputs, &options)?, &options).with_any_own_load(&options);
+    let mut study =
+        Study::new(Data::before_a_correction(arm, inputs, &options, true)?, &options).with_any_own_load(&options);
     let selected = plan::search(&mut study, &|_| ());
     Ok(found(&study, &study.training_products(), &selected).misfit)
 }

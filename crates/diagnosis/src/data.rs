@@ -55,17 +55,30 @@ pub struct Data {
     known_dry: Option<[Vec<Vec<f64>>; 2]>,
 }
 
+/// How the columns of recordings are read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reading {
+    /// As they will be diagnosed.
+    Settled,
+    /// With or without a correction, which is weighed.
+    Weighed {
+        /// Whether derivatives of the model are evaluated.
+        derivatives: bool,
+    },
+}
+
 impl Data {
     /// Filters `inputs` and evaluates `arm`, with the known effects, along them.
     ///
     /// # Errors
     /// [`DiagnosisError`], if a known effect does not fit the arm.
     pub fn new(arm: &Arm, inputs: &[input::Input<'_>], options: &Options) -> Result<Self, DiagnosisError> {
-        Self::judged(arm, inputs, options, true)
+        Self::judged(arm, inputs, options, Reading::Settled)
     }
 
     /// As [`Data::new`], but a torque channel that contradicts the model counts as a torque: the recordings may be read wrongly, and
-    /// with and without a correction the same joints must be compared.
+    /// with and without a correction the same joints must be compared. Without `derivatives`, those of the model by positions and
+    /// velocities are zero, which offsets of encoders and compliant joints need.
     ///
     /// # Errors
     /// As for [`Data::new`].
@@ -73,15 +86,16 @@ impl Data {
         arm: &Arm,
         inputs: &[input::Input<'_>],
         options: &Options,
+        derivatives: bool,
     ) -> Result<Self, DiagnosisError> {
-        Self::judged(arm, inputs, options, false)
+        Self::judged(arm, inputs, options, Reading::Weighed { derivatives })
     }
 
     fn judged(
         arm: &Arm,
         inputs: &[input::Input<'_>],
         options: &Options,
-        by_model: bool,
+        reading: Reading,
     ) -> Result<Self, DiagnosisError> {
         let known = known::Known::new(arm, &options.known)?;
         let arm = &known.arm;
@@ -91,9 +105,11 @@ impl Data {
         let known::TakenOff { mut recorded, dry } = known.take_off(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
+        let by_model = reading == Reading::Settled;
+        let derivatives = !matches!(reading, Reading::Weighed { derivatives: false });
         let chunks = motions.chunks.par_iter();
         let rigid: Vec<rigid::Rigid> = chunks
-            .map(|chunk| rigid::Rigid::new(arm, &nominal, &offset, chunk))
+            .map(|chunk| rigid::Rigid::with_derivatives(arm, &nominal, &offset, chunk, derivatives))
             .collect();
         let mut scales = measure::scales(&motions, torque);
         known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);

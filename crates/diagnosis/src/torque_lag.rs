@@ -4,15 +4,21 @@
 //! It resembles viscous friction and drives that turn with two joints.
 
 use effects::Term;
+use effects::background::LAG;
 use effects::drive::{ActuationDelay, LATE, LATE_SIGN, UNIT_LAG};
 use nalgebra::{DMatrix, DVector};
 use recording::RegularRecording;
 
 use crate::data::input::Input;
 use crate::data::statistics::NORMAL_95;
+use crate::regression::strengths::Strengths;
+use crate::regression::table::Table;
 use crate::search::problem::Selection;
 use crate::selection::FinalFit;
-use crate::thresholds::{LEAST_LAG, LEAST_LAG_NATS, LEAST_LAGGING, MOST_OF_LAG, SURE_OF_LAG, TURNS_LATE};
+use crate::selection::bootstrap::Resampled;
+use crate::thresholds::{
+    LEAST_LAG, LEAST_LAG_NATS, LEAST_LAGGING, LEAST_NOTED_LAG, MOST_OF_LAG, SURE_OF_LAG, TURNS_LATE,
+};
 
 /// A lag that the torques of all joints have in common.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +57,11 @@ impl TorqueLag {
             .iter()
             .flat_map(|&joint| TURNS_LATE.map(|delay| Term::on(&LATE_SIGN, joint).sized([delay])));
         let lags = joints.iter().map(|&joint| Term::on(&LATE, joint).sized([UNIT_LAG]));
-        let lagging = study.fit_with(&columns, turns.chain(lags).collect(), &fit.weights);
+        let strengths = Strengths {
+            without_lag: true,
+            ..study.strengths.clone()
+        };
+        let (_, lagging) = study.table_and_fit_at(&strengths, &columns, turns.chain(lags).collect(), &fit.weights);
         // The column is the torque less the earlier torque, which a late torque lacks.
         let lags = -DVector::from_column_slice(&lagging.coefficients[lagging.coefficients.len() - count..]);
         let covariance = lagging.information_of_last(count).try_inverse()?;
@@ -104,6 +114,22 @@ impl TorqueLag {
              they are compared without this lag (--torque-lag 0 compares them as they were recorded)"
         )
     }
+}
+
+/// A note on the lag that is a part of the background, if it is clear.
+pub fn note_on_short(table: &Table, resampled: &Resampled) -> Option<String> {
+    let lag = table.terms.iter().position(|term| term.is(&LAG))?;
+    let place = resampled.column(lag)?;
+    let (value, [low, high]) = resampled.interval_within(0.0, |draw| draw[place]);
+    let is_clear = value.abs() >= LEAST_NOTED_LAG && low * high > 0.0;
+    is_clear.then(|| {
+        let [ms, half] = [1e3 * value.abs(), 500.0 * (high - low)];
+        let way = if value > 0.0 { "later" } else { "earlier" };
+        format!(
+            "the torques of all joints are {ms:.1} ± {half:.1} ms {way} than the positions, as where a controller holds its torque for a \
+             period; every size allows for it, and the corrected model does not contain it"
+        )
+    })
 }
 
 /// The value that several estimates have in common, by generalised least squares.

@@ -2,12 +2,15 @@
 
 mod support;
 
-use diagnosis::{Action, Diagnosis, Options, diagnose};
+use diagnosis::{Action, Diagnosis, Options, Parameter, diagnose};
 use recording::RegularRecording;
 use support::{baseline_friction, effects_on, inputs, named, recorded, regular, sentences, trio};
 
 /// The time constant of the filter in the drives (s), which is its lag at low frequencies.
 const LAG: f64 = 0.012;
+
+/// The viscous friction of each joint of the robot (N m s/rad), that of `baseline_friction`.
+const VISCOUS: f64 = 0.4;
 
 /// Recordings of a robot with friction, of which the torques of `lagging` joints passed a first-order filter.
 fn recordings(lagging: &[usize]) -> Vec<RegularRecording> {
@@ -82,4 +85,35 @@ fn a_lag_is_not_a_drive_that_turns_with_two_joints() {
             sentences(&found)
         );
     }
+}
+
+/// A lag that is too short to be removed is a part of every fit, so that it does not change friction.
+#[test]
+fn a_short_lag_does_not_change_viscous_friction() {
+    let late = |recording: &RegularRecording| recording.without_torque_lag(-0.0015);
+    let recordings: Vec<RegularRecording> = recordings(&[]).iter().map(late).collect();
+    let found = |torque_lag: Option<f64>| -> (f64, bool) {
+        let options = Options {
+            torque_lag,
+            ..Options::default()
+        };
+        let found = diagnose(&trio(), &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed");
+        assert!(named(&found).is_empty(), "{:?}", sentences(&found));
+        assert_eq!(found.report.torque_lag, None);
+        let is_noted = found.remarks.iter().any(|remark| remark.contains("later than the positions"));
+        assert_eq!(is_noted, torque_lag.is_none(), "{:?}", found.remarks);
+        let viscous = found
+            .report
+            .findings
+            .iter()
+            .filter(|finding| finding.effect == "viscous_friction");
+        let sizes: Vec<_> = viscous.map(|finding| &finding.parameters["coefficient"]).collect();
+        assert_eq!(sizes.len(), 3, "{:?}", sentences(&found));
+        let off = |size: &&Parameter| (size.value - VISCOUS).abs();
+        let is_within = |size: &&Parameter| size.ci95[0] <= VISCOUS && VISCOUS <= size.ci95[1];
+        (sizes.iter().map(off).fold(0.0, f64::max), sizes.iter().all(is_within))
+    };
+    let ((error, holds), (as_recorded, _)) = (found(None), found(Some(0.0)));
+    assert!(holds && error < 0.02 * VISCOUS, "{error}");
+    assert!(as_recorded > 2.0 * error, "{as_recorded} against {error}");
 }

@@ -78,3 +78,19 @@ pub static GAIN: Law = Law {
     needs_model: true,
     ..Law::PLAIN
 };
+
+/// The derivative of each joint's rigid torque by time, with the opposite sign; its coefficient is the time (s) by which all measured
+/// torques come later than the positions. Measured torques are not differentiated, because dry friction may turn round late on its own.
+pub static LAG: Law = Law {
+    name: "lag",
+    column: |_, joint, motion| {
+        let torque = motion.of_model(joint);
+        let last = torque.len().saturating_sub(1);
+        motion.map(|k| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+            (torque[before] - torque[after]) / (motion.period * (after - before).max(1) as f64)
+        })
+    },
+    needs_model: true,
+    ..Law::PLAIN
+};

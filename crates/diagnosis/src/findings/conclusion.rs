@@ -31,6 +31,7 @@ use crate::selection::FinalFit;
 use crate::selection::predict::errors;
 use crate::selection::{constant_torques, coupling, torque_constants};
 use crate::thresholds::LEAST_FOR_DYNAMICS;
+use crate::torque_lag;
 
 /// The note that the next experiment was requested in vain.
 const NO_MOTION: &str = "no motion is proposed, because the recordings do not contain enough data";
@@ -156,6 +157,7 @@ impl Conclusion {
             at_rest::note(last),
             torque_constants::note_on_unnamed(study, &judged.named),
             coupling::note(study, &judged.named),
+            torque_lag::note_on_short(table, resampled),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
         let notes = notes.into_iter().flatten().chain(not_there).collect();

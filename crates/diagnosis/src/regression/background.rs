@@ -10,11 +10,11 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
-use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OFFSET, OWN_FRICTION, OWN_LOAD};
+use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, LAG, OFFSET, OWN_FRICTION, OWN_LOAD};
 
 use crate::regression::bodies::{PER_LINK, Quadratic, physical, possible_part, prior_about};
 use crate::regression::strengths::Strengths;
-use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, NAMELESS_OFFSET};
+use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, LAG_PRIOR, NAMELESS_OFFSET};
 
 /// The prior of the background at strength one: the first columns of a table.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +48,8 @@ pub struct Background {
     pub cost: f64,
     /// The strength of friction.
     pub friction: f64,
+    /// Whether it is the lag of the torques alone, so that the model is taken as exact.
+    pub is_lag_alone: bool,
 }
 
 impl Background {
@@ -107,6 +109,7 @@ impl Prior {
             prior.push(Term::on(&OFFSET, joint), level);
             prior.push(Term::on(&GAIN_LAW, joint), GAIN_PRIOR);
         }
+        prior.push(Term::about(&LAG, 0), LAG_PRIOR);
         for (parameter, &deviation) in own_load.into_iter().flatten().enumerate() {
             prior.push(Term::about(&OWN_LOAD, moved.len() - 1).of(parameter), deviation);
         }
@@ -187,13 +190,11 @@ impl Prior {
         std::array::from_fn(|k| inverse.as_ref().map_or(0.0, |inverse| rho * rho * inverse[(k, k)]))
     }
 
-    /// The background at `strengths`; `None` if they are all zero and all recordings have the same load.
+    /// The background at `strengths`.
     pub fn at(&self, strengths: &Strengths) -> Option<Background> {
-        if strengths.is_none() && !self.terms.iter().any(|term| term.is(&OWN_LOAD)) {
-            return None;
-        }
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&OWN_LOAD) => 1.0,
+            term if term.is(&LAG) => f64::from(u8::from(!strengths.without_lag)),
             term if term.is(&INERTIAL_PARAMETER) => strengths.of_link(term.of[0]),
             term if term.is(&GAIN_LAW) => {
                 let is_left_out = |joint: usize| {
@@ -222,6 +223,7 @@ impl Prior {
         if columns.is_empty() {
             return None;
         }
+        let is_lag_alone = columns.iter().all(|&column| self.terms[column].is(&LAG));
         let entry = |&a: &usize, &b: &usize| {
             let (one, other) = (self.terms[a], self.terms[b]);
             let are_inertial = one.is(&INERTIAL_PARAMETER) && other.is(&INERTIAL_PARAMETER);
@@ -248,6 +250,7 @@ impl Prior {
             log_det,
             cost: strengths.cost(),
             friction: strengths.friction,
+            is_lag_alone,
         })
     }
 }

@@ -147,9 +147,11 @@ impl Products {
         }
     }
 
-    /// Whether there is a background.
+    /// Whether there is a background that corrects the model, beside the lag of the torques.
     pub fn has_background(&self) -> bool {
-        self.background.is_some()
+        self.background
+            .as_ref()
+            .is_some_and(|background| !background.is_lag_alone)
     }
 
     /// The strength of friction in the background.
@@ -235,12 +237,12 @@ impl Products {
 
     /// Fits `columns` with the joints weighted by their residuals, starting with the weights `weights`.
     ///
-    /// With a background, the weights are kept, because its elimination for other weights costs more than many fits.
+    /// With a background that corrects the model, the weights are kept, because its elimination for other weights costs more than many fits.
     /// [`Self::reweighted`] recomputes them after a decision.
     pub fn fit(&self, table: &Table, columns: &[usize], weights: &[f64]) -> Fit {
         let mut weights = weights.to_vec();
         let mut fit = self.solve(table, columns, &weights);
-        if self.background.is_some() {
+        if self.has_background() {
             return fit;
         }
         for _ in 1..REWEIGHTINGS {
@@ -254,7 +256,7 @@ impl Products {
 
     /// `fit` with the joints weighted by their residuals in it.
     pub fn reweighted(&self, table: &Table, mut fit: Fit) -> Fit {
-        if self.background.is_none() {
+        if !self.has_background() {
             return fit;
         }
         for _ in 1..REWEIGHTINGS {

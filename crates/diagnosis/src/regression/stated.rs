@@ -13,6 +13,8 @@ pub struct Stated {
     pub gain: Option<f64>,
     /// Whether no form of friction is in the background.
     pub is_friction_plain: bool,
+    /// Whether the lag of all torques is known.
+    pub is_lag_known: bool,
 }
 
 impl Stated {
@@ -22,6 +24,7 @@ impl Stated {
             links: options.urdf_accuracy,
             gain: options.torque_accuracy,
             is_friction_plain: false,
+            is_lag_known: options.torque_lag.is_some(),
         }
     }
 
@@ -30,6 +33,7 @@ impl Stated {
         Strengths {
             links: vec![self.links.unwrap_or(0.0); links],
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
+            without_lag: self.is_lag_known,
             ..Strengths::none(links)
         }
     }

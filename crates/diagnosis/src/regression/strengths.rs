@@ -30,6 +30,8 @@ pub struct Strengths {
     /// The joints whose torque constant would differ from one by more than [`MOST_CONSTANT`](crate::thresholds::MOST_CONSTANT), so that it
     /// is not in the background: an effect must explain the difference.
     pub impossible_constants: Vec<usize>,
+    /// Whether the torques come exactly when the positions do, so that their lag is not in the background.
+    pub without_lag: bool,
 }
 
 /// A part of the background that [`Strengths::weaker`] reduces.
@@ -75,6 +77,7 @@ impl Strengths {
             nameless_offsets: Vec::new(),
             named_constants: Vec::new(),
             impossible_constants: Vec::new(),
+            without_lag: false,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Prediction errors on all rows, at rest and in motion.
 
-use effects::background::{FRICTION_CURVE, GAIN, OWN_FRICTION, OWN_LOAD};
+use effects::background::{FRICTION_CURVE, GAIN, LAG, OWN_FRICTION, OWN_LOAD};
 use effects::{Cone, Term};
 
 use crate::data::Data;
@@ -23,7 +23,7 @@ pub fn augmented(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64
 /// background's corrections of friction and torque constants and the load of some recordings, which no file holds.
 pub fn exported(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64> {
     let is_exported = |term: &Term| {
-        let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &OWN_LOAD];
+        let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &LAG, &OWN_LOAD];
         kept_apart.iter().all(|law| !term.is(law))
     };
     residual(data, table, fit, joint, is_exported)

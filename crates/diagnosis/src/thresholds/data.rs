@@ -141,6 +141,9 @@ pub const FALLS_TO: f64 = 0.8;
 /// The shortest lag of all torques that is removed (s). Source: recordings of ten robots and simulated cases without such a lag, in which
 /// the joints agree on 1.6 ms at most.
 pub const LEAST_LAG: f64 = 0.002;
+/// The shortest lag of all torques that a note reports (s). Source: choice; a shorter one changes viscous friction by less than its
+/// interval.
+pub const LEAST_NOTED_LAG: f64 = 0.0005;
 /// The number of joints whose own lags must be clear, because the lag of one or two joints may be a delay of their drives.
 pub const LEAST_LAGGING: usize = 3;
 /// A joint's lag is clear if it is this multiple of its standard deviation.

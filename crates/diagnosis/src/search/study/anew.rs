@@ -71,7 +71,18 @@ impl Study {
 
     /// The same fit after the table of its columns.
     pub fn table_and_fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> (Table, Fit) {
-        let (table, products) = self.reduced(columns, more, self.moving, &self.strengths);
+        self.table_and_fit_at(&self.strengths, columns, more, weights)
+    }
+
+    /// The same ones with other strengths of the background.
+    pub fn table_and_fit_at(
+        &self,
+        strengths: &Strengths,
+        columns: &[usize],
+        more: Vec<Term>,
+        weights: &[f64],
+    ) -> (Table, Fit) {
+        let (table, products) = self.reduced(columns, more, self.moving, strengths);
         let columns: Vec<usize> = (self.prior.terms().len()..table.terms.len()).collect();
         let fit = products.solve(&table, &columns, weights);
         (table, fit)
