@@ -2,6 +2,7 @@
 
 pub mod candidate;
 mod connection;
+mod drag;
 pub mod own_load;
 pub mod physics;
 pub mod plan;

@@ -100,7 +100,10 @@ fn a_short_lag_does_not_change_viscous_friction() {
         let found = diagnose(&trio(), &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed");
         assert!(named(&found).is_empty(), "{:?}", sentences(&found));
         assert_eq!(found.report.torque_lag, None);
-        let is_noted = found.remarks.iter().any(|remark| remark.contains("later than the positions"));
+        let is_noted = found
+            .remarks
+            .iter()
+            .any(|remark| remark.contains("later than the positions"));
         assert_eq!(is_noted, torque_lag.is_none(), "{:?}", found.remarks);
         let viscous = found
             .report

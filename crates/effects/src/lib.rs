@@ -69,7 +69,7 @@ pub mod friction {
 
     pub use asymmetry::FrictionAsymmetry;
     pub use coulomb::CoulombFriction;
-    pub use drag::QuadraticDrag;
+    pub use drag::{DRAG, QuadraticDrag, TURBULENT};
     pub use load_dependent::LoadDependentFriction;
     pub use stribeck::StribeckFriction;
     pub use thermal::ThermalDrift;

@@ -6,48 +6,70 @@ use crate::{PartialSignal, Recording, Warning};
 const LEAST_RUNS: usize = 20;
 /// The smallest share of the samples that must be repeated equally often.
 const ALIKE: f64 = 0.8;
+/// Samples of positions that are held for more rows than this may be held for one more or one less.
+const DRIFTS_FROM: usize = 3;
 
-/// The recording with each sample once, and a warning, if samples were written several times; `None` otherwise.
+/// The recording with each sample once, and a warning, if samples were written several times, or if positions were refreshed in some of the
+/// rows only, whatever the other signals do; `None` otherwise.
 ///
-/// The positions of repeated samples are constant and then jump, so that their derivatives are meaningless.
+/// The positions of repeated samples are constant and then jump, so that their derivatives are meaningless, and they are older than the
+/// torques of the same rows.
 pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
-    let runs = runs(recording);
+    if let Some((held, samples)) = samples(&runs(recording, true), &is_multiple) {
+        let warning = Warning::Held {
+            rows: recording.len(),
+            samples: samples.len(),
+            held,
+        };
+        return Some((picked(recording, &samples), warning));
+    }
+    let (held, samples) = samples(&runs(recording, false), &is_equal)?;
+    let warning = Warning::HeldPositions {
+        rows: recording.len(),
+        samples: samples.len(),
+        held,
+    };
+    Some((picked(recording, &samples), warning))
+}
+
+/// Whether a sample was written `length` times if most samples were written `held` times. The clock of the logger drifts relative to that of
+/// the drive, so that a sample is sometimes repeated once more or once less. Values that remain constant for longer are separate samples
+/// with the same value.
+fn is_multiple(length: usize, held: usize) -> bool {
+    let rest = length % held;
+    rest <= 1 || rest + 1 >= held
+}
+
+/// As [`is_multiple`] for positions alone, which a coarse encoder also repeats, but for different numbers of rows.
+fn is_equal(length: usize, held: usize) -> bool {
+    length == held || (held > DRIFTS_FROM && length.abs_diff(held) <= 1)
+}
+
+/// The number of rows for which most samples of `runs` are held, and the rows of the samples; `None` if samples are not held, or if too few
+/// runs are alike.
+fn samples(runs: &[(usize, usize)], is_alike: &dyn Fn(usize, usize) -> bool) -> Option<(usize, Vec<usize>)> {
     let mut lengths: Vec<usize> = runs.iter().map(|&(_, length)| length).collect();
     if lengths.len() < LEAST_RUNS {
         return None;
     }
     let middle = lengths.len() / 2;
     let held = *lengths.select_nth_unstable(middle).1;
-    // The clock of the logger drifts relative to that of the drive, so that a sample is sometimes repeated once more
-    // or once less. Values that remain constant for longer are separate samples with the same value.
-    let is_alike = |length: &&usize| {
-        let rest = **length % held;
-        rest <= 1 || rest + 1 >= held
-    };
-    if held < 2 || (lengths.iter().filter(is_alike).count() as f64) < ALIKE * lengths.len() as f64 {
+    let alike = lengths.iter().filter(|&&length| is_alike(length, held)).count();
+    if held < 2 || (alike as f64) < ALIKE * lengths.len() as f64 {
         return None;
     }
-    let samples = |length: usize| ((length as f64 / held as f64).round() as usize).max(1);
-    let rows: Vec<usize> = runs
+    let times = |length: usize| ((length as f64 / held as f64).round() as usize).max(1);
+    let rows = runs
         .iter()
-        .flat_map(|&(first, length)| (0..samples(length)).map(move |sample| first + (sample * held).min(length - 1)))
-        .collect();
-    let warning = Warning::Held {
-        rows: recording.len(),
-        samples: rows.len(),
-        held,
-    };
-    Some((picked(recording, &rows), warning))
+        .flat_map(|&(first, length)| (0..times(length)).map(move |sample| first + (sample * held).min(length - 1)));
+    Some((held, rows.collect()))
 }
 
-/// First row and length of each stretch of rows with the same positions, velocities and torques.
-fn runs(recording: &Recording) -> Vec<(usize, usize)> {
+/// First row and length of each stretch of rows with the same positions, and, with `all`, the same velocities and torques.
+fn runs(recording: &Recording, all: bool) -> Vec<(usize, usize)> {
     let signals = || {
-        recording
-            .q
-            .iter()
-            .chain(&recording.tau)
-            .chain(recording.qd.iter().flatten())
+        let others = recording.tau.iter().chain(recording.qd.iter().flatten());
+        recording.q.iter().chain(others.filter(move |_| all))
     };
     let repeats = |row: usize| {
         recording.breaks.binary_search(&row).is_err() && signals().all(|signal| signal[row] == signal[row - 1])
@@ -127,6 +149,35 @@ mod tests {
         let (regular, warnings) = recording.regular().expect("it has a clock");
         assert!(warnings.contains(&expected), "{warnings:?}");
         assert!((regular.period - 0.01).abs() < 1e-4, "{}", regular.period);
+    }
+
+    #[test]
+    fn positions_that_are_held_under_torques_are_left_once() {
+        let mut recording = written(|_| 3);
+        recording.tau = vec![(0..recording.len()).map(|row| (0.01 * row as f64).cos()).collect()];
+        let (thinned, warning) = without_held(&recording).expect("positions are held");
+        assert_eq!((thinned.len(), thinned.tau[0][100]), (500, recording.tau[0][300]));
+        let expected = Warning::HeldPositions {
+            rows: 1500,
+            samples: 500,
+            held: 3,
+        };
+        assert_eq!(warning, expected);
+    }
+
+    /// A joint passes the lines of a coarse encoder at different speeds.
+    #[test]
+    fn a_coarse_encoder_does_not_hold_its_positions() {
+        let mut recording = written(|_| 1);
+        recording.tau = vec![(0..recording.len()).map(|row| (0.3 * row as f64).cos()).collect()];
+        for quantum in [0.02, 0.04, 0.06] {
+            let coarse = recording.q[0].iter().map(|q| (q / quantum).round() * quantum).collect();
+            let recording = Recording {
+                q: vec![coarse],
+                ..recording.clone()
+            };
+            assert!(without_held(&recording).is_none(), "{quantum}");
+        }
     }
 
     #[test]

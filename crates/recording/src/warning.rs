@@ -50,6 +50,15 @@ pub enum Warning {
         /// The number of rows of most samples.
         held: usize,
     },
+    /// The positions were refreshed in some of the rows only; the others were omitted.
+    HeldPositions {
+        /// The number of rows read.
+        rows: usize,
+        /// The number of rows with refreshed positions.
+        samples: usize,
+        /// The number of rows for which most positions are held.
+        held: usize,
+    },
     /// The time starts again: the file contains several runs.
     ClockRestart {
         /// The line or row at which the new run begins.
@@ -221,6 +230,11 @@ impl fmt::Display for Warning {
                 f,
                 "each sample stands in {held} rows: of {rows} rows {samples} are used, each sample once (record at the rate at \
                  which the drive samples)"
+            ),
+            Self::HeldPositions { rows, samples, held } => write!(
+                f,
+                "the positions of all joints change in one of {held} rows only, and the torques in every row: of {rows} rows the {samples} with \
+                 new positions are used (record both at the rate at which the positions are measured)"
             ),
             Self::ClockRestart {
                 line,

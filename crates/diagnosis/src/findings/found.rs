@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use effects::Acts;
-use effects::arm::InertialParameters;
+use effects::arm::{InertialParameters, Payload};
 use effects::laws::ACCELERATION;
 
 use crate::data::Data;
-use crate::findings::other_friction::widen;
+use crate::findings::other_friction::{possible_beside, widen};
 use crate::report::{Change, Confusable, Finding, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
@@ -23,14 +23,20 @@ use crate::thresholds::{LISTED_SHARE, SUREST};
 /// The findings, each with its candidate.
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
     let problem = last.problem();
-    last.judged
+    let standing = |member: &Member| standing(&last.study, &problem, &last.judged.named, member.candidate);
+    let standings: Vec<(&Member, Standing)> = last
+        .judged
         .members
         .iter()
-        .flat_map(|member| {
-            let standing = standing(&last.study, &problem, &last.judged.named, member.candidate);
-            let mut list = finding(last, &problem, member, &standing);
+        .map(|member| (member, standing(member)))
+        .collect();
+    let beside = possible_beside(last, &standings);
+    standings
+        .iter()
+        .flat_map(|(member, standing)| {
+            let mut list = finding(last, &problem, member, standing);
             if let Some(first) = list.first_mut() {
-                widen(first, last, &problem, member);
+                widen(first, last, &problem, member, &beside);
             }
             list.into_iter()
                 .map(|finding| (finding, Some(member.candidate)))
@@ -80,10 +86,10 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         } else {
             rotor_share(last, candidate)
         };
-        // A mass that may be zero is that of no body: only moments are determined, which a link may have, too. A change that may be zero is
-        // no clear change.
-        let may_be_none =
-            (last_link.is_some() || change.is_some()) && may_be_nothing(named.effect.spec(), &named.parameters);
+        // A size that may be zero is that of no effect, and a change that may be zero is no clear change. Only a body whose mass is not
+        // determined has clear moments, if no link may have them, too.
+        let has_moments = named.effect.is(&Payload) && last_link.is_none() && change.is_none();
+        let may_be_none = !has_moments && may_be_nothing(named.effect.spec(), &named.parameters);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,

@@ -1,19 +1,40 @@
-//! The sizes of Coulomb or viscous friction where only one of the two is named.
+//! The sizes of friction beside other friction of the joint that is not named.
 
 use effects::Term;
+use effects::friction::{QuadraticDrag, TURBULENT, ViscousFriction};
 
 use crate::report::{Finding, Parameter};
+use crate::search::candidate::Hypothesis;
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
 use crate::selection::judge::Member;
+use crate::selection::rivals::{Rival, Standing};
 
-/// Widens the interval of `finding`, if it is friction that every joint has, by what the other such friction of its joint would change:
-/// both are probably there, although the recordings need one only.
-pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, member: &Member) {
+/// The friction that may be on a joint beside the one that is named there: alternatives of its Coulomb or viscous friction.
+pub fn possible_beside(last: &FinalFit, of: &[(&Member, Standing)]) -> Vec<Rival> {
+    let study = &last.study;
+    let is_plain = |member: &Member| study.candidates[member.candidate].hypothesis.is_plain_friction();
+    let plain = of.iter().filter(|(member, _)| is_plain(member));
+    let drag = Hypothesis::of(&QuadraticDrag);
+    let drags = plain.flat_map(|(member, standing)| {
+        let joint = study.candidates[member.candidate].joint;
+        let rivals = standing.rivals.iter().copied();
+        rivals.filter(move |&(hypothesis, on)| hypothesis == drag && on == joint)
+    });
+    drags.collect()
+}
+
+/// Widens the interval of `finding`, if it is friction that grows with the speed or that every joint has, by what other friction of its
+/// joint would change that is probably or possibly there, although the recordings do not require it: Coulomb and viscous friction, and
+/// the drag among `beside`.
+pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, member: &Member, beside: &[Rival]) {
     let study = &last.study;
     let candidate = &study.candidates[member.candidate];
-    let spec = candidate.hypothesis.spec();
-    let (true, true, [own]) = (spec.is_baseline, spec.is_friction, &candidate.columns[..]) else {
+    let is_drag = candidate.hypothesis.is(&QuadraticDrag);
+    let (true, [own]) = (
+        is_drag || candidate.hypothesis.is_plain_friction(),
+        &candidate.columns[..],
+    ) else {
         return;
     };
     // What changed, changed alone.
@@ -21,24 +42,29 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
         return;
     }
     let selected = &last.judged.named.set;
-    let is_other = |index: &usize| {
-        let other = &study.candidates[*index];
-        let (kind, spec) = (other.hypothesis, other.hypothesis.spec());
-        let is_its_like = spec.is_baseline && spec.is_friction && kind != candidate.hypothesis;
+    let is_free = |index: usize| {
+        let other = &study.candidates[index];
         let contains = |c: usize| {
             let this = &study.candidates[c];
-            this.joint == other.joint && this.hypothesis.contains(kind)
+            this.joint == other.joint && this.hypothesis.contains(other.hypothesis)
         };
-        let is_there = || selected.iter().any(|&c| contains(c) || problem.exclude(c, *index));
-        let is_lacking = || !study.has_known(kind, other.joint) && !is_there();
-        is_its_like && other.joint == candidate.joint && study.always_acts(*index) && is_lacking()
+        let is_there = || selected.iter().any(|&c| contains(c) || problem.exclude(c, index));
+        other.joint == candidate.joint
+            && study.always_acts(index)
+            && !study.has_known(other.hypothesis, other.joint)
+            && !is_there()
     };
-    let Some(other) = (0..study.candidates.len()).find(is_other) else {
-        return;
+    let is_other = |index: &usize| {
+        let other = study.candidates[*index].hypothesis;
+        let is_its_like = match is_drag {
+            true => other.is(&ViscousFriction),
+            false => other.is_plain_friction() && other != candidate.hypothesis,
+        };
+        is_its_like && is_free(*index)
     };
     let fit = &last.judged.named.fit;
     let others: Vec<usize> = fit.selected().iter().copied().filter(|column| column != own).collect();
-    let own: Term = study.table.terms[*own];
+    let alone: Term = study.table.terms[*own];
     // The size and its standard deviation, if the residual were white.
     let size_with = |more: Vec<Term>| -> Option<[f64; 2]> {
         let count = more.len();
@@ -47,11 +73,37 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
         let value = fit.coefficients[fit.coefficients.len() - count];
         Some([value, covariance[(0, 0)].sqrt()])
     };
-    let alone = size_with(vec![own]);
-    let both = size_with([vec![own], study.terms(other)].concat());
-    let parameter = spec.main.first().and_then(|main| finding.parameters.get_mut(main));
-    if let (Some([_, alone]), Some([value, with_other]), Some(parameter)) = (alone, both, parameter) {
-        widen_to(parameter, value, with_other / alone);
+    let other = (0..study.candidates.len())
+        .find(is_other)
+        .map(|other| study.terms(other));
+    // Of the forms of a drag, the first one is that with an exponent of two.
+    let drag = beside.iter().find(|(_, on)| *on == candidate.joint && !is_drag);
+    let drag = drag.and_then(|&(drag, _)| {
+        let is_this = |&index: &usize| study.candidates[index].hypothesis == drag && is_free(index);
+        (0..study.candidates.len())
+            .find(is_this)
+            .map(|index| study.terms(index))
+    });
+    if other.is_none() && drag.is_none() {
+        return;
+    }
+    let beside = [other.clone(), drag.clone()].into_iter().flatten();
+    let both = other.zip(drag).map(|(other, drag)| [other, drag].concat());
+    let main = candidate.hypothesis.spec().main.first();
+    let Some([_, deviation]) = size_with(vec![alone]) else {
+        return;
+    };
+    for more in beside.chain(both) {
+        // A drag beside viscous friction has its usual exponent.
+        let own = if is_drag { alone.sized([TURBULENT]) } else { alone };
+        let size = size_with([vec![own], more].concat()).filter(|[value, _]| *value > 0.0);
+        let parameter = main.and_then(|main| finding.parameters.get_mut(main));
+        if let (Some([value, with_other]), Some(parameter)) = (size, parameter) {
+            widen_to(parameter, value, with_other / deviation);
+            if is_drag && let Some(exponent) = finding.parameters.get_mut("exponent") {
+                widen_to(exponent, TURBULENT, 0.0);
+            }
+        }
     }
 }
 

@@ -44,6 +44,11 @@ impl Hypothesis {
         self.spec().is_baseline && !self.spec().is_friction
     }
 
+    /// Whether it is Coulomb or viscous friction, which most joints have.
+    pub fn is_plain_friction(self) -> bool {
+        self.spec().is_baseline && self.spec().is_friction
+    }
+
     /// Whether it is `other` or contains it: friction of another form, such as Stribeck friction, contains a level of Coulomb friction.
     pub fn contains(self, other: Self) -> bool {
         self == other || self.generalises() == Some(other)

@@ -2,6 +2,7 @@
 
 use crate::options::Step;
 use crate::search::connection;
+use crate::search::drag;
 use crate::search::problem::Selection;
 use crate::search::refine::refine;
 use crate::search::study::Study;
@@ -77,6 +78,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         }
     }
     selected = connection::in_place_of_delays(study, selected);
+    selected = drag::beside_viscous_friction(study, selected);
     // With all sizes found, candidates that did not pay or were impossible before may do so, and the residual may show a contact, a
     // ripple or an onset that wrong sizes hid. Where unmodelled forms remain, it would show the errors of these.
     for _ in 0..MOST_LAST {
@@ -94,6 +96,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         }
         selected = refine(study, selected, false);
         selected = connection::in_place_of_delays(study, selected);
+        selected = drag::beside_viscous_friction(study, selected);
     }
     let selected = study.with_constants_that_changed(selected);
     let selected = study.without_imitations(selected);

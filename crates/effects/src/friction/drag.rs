@@ -41,6 +41,9 @@ fn drag(qd: f64, exponent: f64) -> f64 {
     qd.abs().powf(exponent).copysign(qd)
 }
 
+/// The exponent of the drag of a turbulent flow.
+pub const TURBULENT: f64 = 2.0;
+
 /// The exponents that a drag may have. Source: `prove`, seeds 1 and 2, and two sets made with MuJoCo.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 1.4..=3.2;
 
@@ -51,7 +54,7 @@ impl EffectKind for QuadraticDrag {
 
     fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
         let forms = |joint| {
-            [2.0, 1.6, 2.5].map(|exponent| {
+            [TURBULENT, 1.6, 2.5].map(|exponent| {
                 let terms = vec![Term::on(&DRAG, joint).sized([exponent])];
                 Form::on(Turn::Friction, joint, terms)
             })
@@ -62,7 +65,7 @@ impl EffectKind for QuadraticDrag {
     fn sets_in(&self) -> Option<SetsIn> {
         Some(SetsIn {
             turn: 3,
-            forms: |joint| vec![vec![Term::on(&DRAG, joint).sized([2.0])]],
+            forms: |joint| vec![vec![Term::on(&DRAG, joint).sized([TURBULENT])]],
             looked_for_with: 1,
         })
     }
