@@ -12,7 +12,7 @@ use crate::search::study::Study;
 use crate::selection::of_noise::may_be_noise;
 use crate::thresholds::{
     ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
-    OF_BEYOND, WORSE,
+    OF_BEYOND, SHAKES_FOR, WORSE,
 };
 
 mod held_out;
@@ -80,6 +80,11 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
     }
     while let Some(long) = lasting(&problem, &selected) {
         selected = problem.without(&selected, long);
+    }
+    while let Some(early) = at_the_beginning(&problem, &selected) {
+        let next = problem.without(&selected, early);
+        study.note("a robot that begins to move may shake", &selected, &next);
+        selected = next;
     }
     let mut members;
     if let Some(held) = held {
@@ -166,6 +171,19 @@ fn lasting(problem: &Problem<'_>, selected: &Selection) -> Option<usize> {
     there
         .max_by(|a, b| length(a.1).total_cmp(&length(b.1)))
         .map(|(c, _)| *c)
+}
+
+/// A contact that is over soon after its recording has begun: the arm may still shake from being released or switched on.
+fn at_the_beginning(problem: &Problem<'_>, selected: &Selection) -> Option<usize> {
+    let motions = &problem.data.motions;
+    let is_early = |&c: &usize| {
+        let Some([from, to]) = problem.candidates[c].window(problem.table) else {
+            return false;
+        };
+        let recording = motions.recording_at(0.5 * (from + to));
+        recording.is_some_and(|recording| to - motions.span(recording)[0] < SHAKES_FOR)
+    };
+    selected.set.iter().copied().find(is_early)
 }
 
 /// The unmodelled forms that remain in addition to `kept`, with their contributions.

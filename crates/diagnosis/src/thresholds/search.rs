@@ -10,6 +10,9 @@ pub const LARGEST_TORQUE_SHARE: f64 = 3.0;
 /// force is a load or another unmodelled effect, and a free force in a long window would explain any of these. Source:
 /// contacts that are injected into simulated cases last 0.4 to 1.5 s of 25 s.
 pub const MOST_OF_A_RECORDING: f64 = 0.15;
+/// The time after the beginning of a recording in which a contact must not end (s). Source: six simulated arms with an elastic joint or
+/// a flexible base, released at the beginning: three contacts were named at 0 to 0.3 s, with probabilities of 0.956 to 0.985.
+pub const SHAKES_FOR: f64 = 0.5;
 /// The durations of contact that are tried (s). Source: first diagnosis.
 pub const CONTACT_DURATIONS: [f64; 7] = [0.2, 0.35, 0.6, 1.0, 1.6, 2.5, 4.0];
 /// The largest number of windows of contact that a residual suggests. Source: first diagnosis.
