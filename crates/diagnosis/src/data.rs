@@ -77,8 +77,8 @@ impl Data {
     }
 
     /// As [`Data::new`], but a torque channel that contradicts the model counts as a torque: the recordings may be read wrongly, and
-    /// with and without a correction the same joints must be compared. Without `derivatives`, those of the model by positions and
-    /// velocities are zero, which offsets of encoders and compliant joints need.
+    /// with and without a correction the same joints must be compared. Without `derivatives`, the model's derivatives by
+    /// positions and velocities, which offsets of encoders and compliant joints need, are zero.
     ///
     /// # Errors
     /// As for [`Data::new`].

@@ -11,7 +11,6 @@ use recording::RegularRecording;
 
 use crate::data::input::Input;
 use crate::data::statistics::NORMAL_95;
-use crate::regression::strengths::Strengths;
 use crate::regression::table::Table;
 use crate::search::problem::Selection;
 use crate::selection::FinalFit;
@@ -57,10 +56,7 @@ impl TorqueLag {
             .iter()
             .flat_map(|&joint| TURNS_LATE.map(|delay| Term::on(&LATE_SIGN, joint).sized([delay])));
         let lags = joints.iter().map(|&joint| Term::on(&LATE, joint).sized([UNIT_LAG]));
-        let strengths = Strengths {
-            without_lag: true,
-            ..study.strengths.clone()
-        };
+        let strengths = study.strengths.without_lag();
         let (_, lagging) = study.table_and_fit_at(&strengths, &columns, turns.chain(lags).collect(), &fit.weights);
         // The column is the torque less the earlier torque, which a late torque lacks.
         let lags = -DVector::from_column_slice(&lagging.coefficients[lagging.coefficients.len() - count..]);
@@ -124,10 +120,14 @@ pub fn note_on_short(table: &Table, resampled: &Resampled) -> Option<String> {
     let is_clear = value.abs() >= LEAST_NOTED_LAG && low * high > 0.0;
     is_clear.then(|| {
         let [ms, half] = [1e3 * value.abs(), 500.0 * (high - low)];
-        let way = if value > 0.0 { "later" } else { "earlier" };
+        let (way, cause) = if value > 0.0 {
+            ("later", "behind a filter, or on another clock")
+        } else {
+            ("earlier", "where a controller holds for a period the torque that is recorded")
+        };
         format!(
-            "the torques of all joints are {ms:.1} ± {half:.1} ms {way} than the positions, as where a controller holds its torque for a \
-             period; every size allows for it, and the corrected model does not contain it"
+            "the torques of all joints are {ms:.1} ± {half:.1} ms {way} than the positions, in addition to any lag that was removed, as \
+             {cause}; every size allows for it, and the corrected model does not contain it"
         )
     })
 }

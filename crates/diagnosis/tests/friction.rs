@@ -76,6 +76,35 @@ fn two_dry_frictions_on_a_joint_add_up() {
     assert!(left.iter().all(|left| left.share < 0.03), "{left:?}");
 }
 
+/// A drag with a smaller exponent resembles drag and viscous friction, and has as many sizes.
+#[test]
+fn a_drag_does_not_take_the_place_of_viscous_friction() {
+    let (drag, viscous) = (0.6, 0.25);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        let speed = motion.qd[ELBOW];
+        let noise = ((250.0 * motion.time).round() * 12.9898 + 7.1 * motion.clock).sin() * 43758.5453;
+        tau[ELBOW] += drag * speed * speed.abs() + (viscous - 0.4) * speed + 0.34 * (noise - noise.floor() - 0.5);
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let found = |effect: &str| {
+        let mut findings = diagnosis.report.findings.iter();
+        let is_this =
+            |finding: &&diagnosis::Finding| finding.effect == effect && finding.joint.as_deref() == Some("elbow");
+        findings
+            .find(is_this)
+            .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
+    };
+    for (effect, size, truth) in [
+        ("quadratic_drag", "coefficient", drag),
+        ("quadratic_drag", "exponent", 2.0),
+        ("viscous_friction", "coefficient", viscous),
+    ] {
+        let [low, high] = found(effect).parameters[size].ci95;
+        assert!(low <= truth && truth <= high, "{effect}: {low} to {high}");
+    }
+}
+
 /// The diagnosis of three recordings in which the elbow's friction falls from 2 N m at breakaway to its level of 0.6 N m, the
 /// last held out, with a number of recordings from `before`, in which it falls from 0.6 N m plus `old` (N m).
 fn with_new_stribeck_friction(before: usize, old: f64) -> Diagnosis {

@@ -2,12 +2,13 @@
 
 mod support;
 
-use arm::Arm;
+use arm::{Arm, Vector3, Workspace};
 use diagnosis::{Axis, Options, Report, Verdict, diagnose};
 use effects::Regressor;
+use nalgebra::Matrix6xX;
 use support::{
     ELBOW, Motion, SHOULDER, TRIO, TURN, baseline_friction, diagnosed, effects_on, inputs, named, recorded, regular,
-    sentences, trio,
+    sentences, start, trio,
 };
 
 /// Torque constants that are wrong on all joints, each by another part, are reported although no finding names them.
@@ -183,4 +184,29 @@ fn a_factor_beside_an_unexplained_residual_has_no_name() {
     assert_eq!(diagnosis.report.unexplained[0].joint, "turn");
     let names = effects_on(&diagnosis, "turn");
     assert!(!names.contains(&"torque_scale"), "{:?}", sentences(&diagnosis));
+}
+
+/// An arm that is released when its recording begins may shake; later, the same force is a contact.
+#[test]
+fn a_contact_at_the_beginning_of_a_recording_is_not_named() {
+    let arm = trio();
+    let pushed_at = |begin: f64| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            let since = motion.clock - start(1) - begin;
+            if (0.0..0.4).contains(&since) {
+                let mut jacobian = Matrix6xX::zeros(3);
+                arm.jacobian(&mut Workspace::new(&arm), &motion.q, &arm.tool_frame(), &mut jacobian);
+                for (joint, tau) in tau.iter_mut().enumerate() {
+                    *tau -= jacobian
+                        .fixed_view::<3, 1>(3, joint)
+                        .dot(&Vector3::new(15.0, 6.0, 24.0));
+                }
+            }
+        };
+        let diagnosis = diagnosed(&arm, &arm, &injected, Vec::new());
+        named(&diagnosis).contains(&("external_contact", None))
+    };
+    assert!(pushed_at(6.0));
+    assert!(!pushed_at(0.02));
 }

@@ -80,11 +80,12 @@ pub static GAIN: Law = Law {
 };
 
 /// The derivative of each joint's rigid torque by time, with the opposite sign; its coefficient is the time (s) by which all measured
-/// torques come later than the positions. Measured torques are not differentiated, because dry friction may turn round late on its own.
+/// torques come later than the positions. Neither measured torques nor known friction are differentiated, because dry friction may turn
+/// round late on its own.
 pub static LAG: Law = Law {
     name: "lag",
     column: |_, joint, motion| {
-        let torque = motion.of_model(joint);
+        let torque = &motion.rigid.tau[joint];
         let last = torque.len().saturating_sub(1);
         motion.map(|k| {
             let (before, after) = (k.saturating_sub(1), (k + 1).min(last));

@@ -8,6 +8,8 @@ const LEAST_RUNS: usize = 20;
 const ALIKE: f64 = 0.8;
 /// Samples of positions that are held for more rows than this may be held for one more or one less.
 const DRIFTS_FROM: usize = 3;
+/// Two steps of a position are those of the same encoder if they differ by less than this part.
+const SAME_LINE: f64 = 0.01;
 
 /// The recording with each sample once, and a warning, if samples were written several times, or if positions were refreshed in some of the
 /// rows only, whatever the other signals do; `None` otherwise.
@@ -23,7 +25,8 @@ pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
         };
         return Some((picked(recording, &samples), warning));
     }
-    let (held, samples) = samples(&runs(recording, false), &is_equal)?;
+    let runs = runs(recording, false);
+    let (held, samples) = samples(&runs, &is_equal).filter(|_| !is_one_encoder(recording, &runs))?;
     let warning = Warning::HeldPositions {
         rows: recording.len(),
         samples: samples.len(),
@@ -43,6 +46,26 @@ fn is_multiple(length: usize, held: usize) -> bool {
 /// As [`is_multiple`] for positions alone, which a coarse encoder also repeats, but for different numbers of rows.
 fn is_equal(length: usize, held: usize) -> bool {
     length == held || (held > DRIFTS_FROM && length.abs_diff(held) <= 1)
+}
+
+/// Whether the positions change by the lines of one coarse encoder, which a joint passes at a constant speed.
+fn is_one_encoder(recording: &Recording, runs: &[(usize, usize)]) -> bool {
+    let step = |row: usize| -> Option<f64> {
+        let mut steps = recording.q.iter().map(|q| (q[row] - q[row - 1]).abs());
+        let first = steps.by_ref().find(|&step| step > 0.0)?;
+        steps.all(|step| step == 0.0).then_some(first)
+    };
+    let mut alone: Vec<f64> = runs.iter().skip(1).filter_map(|&(row, _)| step(row)).collect();
+    if alone.is_empty() {
+        return false;
+    }
+    let middle = alone.len() / 2;
+    let line = *alone.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let lines = alone
+        .iter()
+        .filter(|&&step| (step - line).abs() < SAME_LINE * line)
+        .count();
+    lines as f64 >= ALIKE * (runs.len() - 1) as f64
 }
 
 /// The number of rows for which most samples of `runs` are held, and the rows of the samples; `None` if samples are not held, or if too few
@@ -178,6 +201,27 @@ mod tests {
             };
             assert!(without_held(&recording).is_none(), "{quantum}");
         }
+        let at_constant_speed = (0..recording.len())
+            .map(|row| 0.01 * (row as f64 / 7.4).floor())
+            .collect();
+        let recording = Recording {
+            q: vec![at_constant_speed],
+            ..recording
+        };
+        assert!(without_held(&recording).is_none());
+    }
+
+    #[test]
+    fn held_positions_may_drift_and_rest() {
+        let times = |sample: usize| match sample {
+            100 | 300 => 200,
+            _ => [5, 5, 6, 5, 4][sample % 5],
+        };
+        let mut recording = written(times);
+        recording.tau = vec![(0..recording.len()).map(|row| (0.01 * row as f64).cos()).collect()];
+        let (thinned, warning) = without_held(&recording).expect("positions are held");
+        assert!(matches!(warning, Warning::HeldPositions { held: 5, .. }), "{warning:?}");
+        assert_eq!(thinned.len(), 500 + 2 * 39);
     }
 
     #[test]

@@ -115,7 +115,7 @@ struct Stretch {
 impl Recording {
     /// The recording on the regular clock on which its drive sampled, and the warnings.
     ///
-    /// Of a sample that is written several times, the first row is used (see [`Warning::Held`]). Each row is assigned
+    /// Of a sample that is written several times, the first row is used (see [`Warning::Held`] and [`Warning::HeldPositions`]). Each row is assigned
     /// to its tick, whatever the deviation of its stamp. Up to five missing ticks are interpolated (and marked in
     /// [`RegularRecording::present`]), longer gaps divide the recording into segments, and single-sample spikes are
     /// interpolated. If the stamps have no regular clock, the rows are resampled at the times of the stamps.

@@ -233,8 +233,8 @@ impl fmt::Display for Warning {
             ),
             Self::HeldPositions { rows, samples, held } => write!(
                 f,
-                "the positions of all joints change in one of {held} rows only, and the torques in every row: of {rows} rows the {samples} with \
-                 new positions are used (record both at the rate at which the positions are measured)"
+                "the positions of all joints change in one of {held} rows only, and other signals more often: of {rows} rows the {samples} with \
+                 new positions are used (record all at the rate at which the positions are measured)"
             ),
             Self::ClockRestart {
                 line,

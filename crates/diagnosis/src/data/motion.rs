@@ -9,7 +9,7 @@ use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::data::statistics::median;
 use crate::data::used::{Section, Used};
-use crate::thresholds::{LARGEST_CUTOFF, MOST_ROWS, ROWS_PER_PERIOD, STILL};
+use crate::thresholds::{LARGEST_CUTOFF, MOST_ROWS, ROWS_PER_PERIOD, SHAKES_FOR, STILL};
 
 /// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
 const WIDER: f64 = 3.0;
@@ -305,6 +305,11 @@ impl Motions {
                 last.max(chunk.time(chunk.ticks().saturating_sub(1))),
             ]
         })
+    }
+
+    /// Whether a time is soon after the beginning of its recording, when the arm may still shake from being released or switched on.
+    pub fn is_at_a_beginning(&self, recording: usize, time: f64) -> bool {
+        time - self.span(recording)[0] < SHAKES_FOR
     }
 
     /// The training recording at a time of the diagnosis' clock.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use effects::Acts;
-use effects::arm::{InertialParameters, Payload};
+use effects::arm::InertialParameters;
 use effects::laws::ACCELERATION;
 
 use crate::data::Data;
@@ -86,10 +86,11 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         } else {
             rotor_share(last, candidate)
         };
-        // A size that may be zero is that of no effect, and a change that may be zero is no clear change. Only a body whose mass is not
-        // determined has clear moments, if no link may have them, too.
-        let has_moments = named.effect.is(&Payload) && last_link.is_none() && change.is_none();
-        let may_be_none = !has_moments && may_be_nothing(named.effect.spec(), &named.parameters);
+        // A mass that may be zero is that of no body: only moments are determined, which a link may have, too. A change that may be zero is
+        // no clear change, and a gap or a delay that may be zero is none.
+        let spec = named.effect.spec();
+        let is_of_size = last_link.is_some() || change.is_some() || spec.is_simulated;
+        let may_be_none = is_of_size && may_be_nothing(spec, &named.parameters);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,

@@ -76,10 +76,10 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
     let other = (0..study.candidates.len())
         .find(is_other)
         .map(|other| study.terms(other));
-    // Of the forms of a drag, the first one is that with an exponent of two.
     let drag = beside.iter().find(|(_, on)| *on == candidate.joint && !is_drag);
     let drag = drag.and_then(|&(drag, _)| {
-        let is_this = |&index: &usize| study.candidates[index].hypothesis == drag && is_free(index);
+        let is_usual = |index| study.terms(index).iter().all(|term: &Term| term.sizes[0] == TURBULENT);
+        let is_this = |&index: &usize| study.candidates[index].hypothesis == drag && is_free(index) && is_usual(index);
         (0..study.candidates.len())
             .find(is_this)
             .map(|index| study.terms(index))
@@ -96,7 +96,7 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
     for more in beside.chain(both) {
         // A drag beside viscous friction has its usual exponent.
         let own = if is_drag { alone.sized([TURBULENT]) } else { alone };
-        let size = size_with([vec![own], more].concat()).filter(|[value, _]| *value > 0.0);
+        let size = size_with([vec![own], more].concat());
         let parameter = main.and_then(|main| finding.parameters.get_mut(main));
         if let (Some([value, with_other]), Some(parameter)) = (size, parameter) {
             widen_to(parameter, value, with_other / deviation);

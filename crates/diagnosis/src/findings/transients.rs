@@ -100,7 +100,8 @@ pub fn search(
         }
         let name = data.motions.sources[recording].name.clone();
         let (force, explained) = residuals.force((from, to));
-        if explained > ONE_FORCE && !is_contact_named {
+        let is_early = data.motions.is_at_a_beginning(recording, to);
+        if explained > ONE_FORCE && !is_contact_named && !is_early {
             pushes.push(Push {
                 window: [from, to],
                 source: recording,

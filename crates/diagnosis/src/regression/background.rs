@@ -109,7 +109,14 @@ impl Prior {
             prior.push(Term::on(&OFFSET, joint), level);
             prior.push(Term::on(&GAIN_LAW, joint), GAIN_PRIOR);
         }
-        prior.push(Term::about(&LAG, 0), LAG_PRIOR);
+        // On one joint, a lag is a delay of its drive.
+        if (0..moved.len())
+            .filter(|&joint| torque[joint] > 0.0 && speed[joint] > 0.0)
+            .count()
+            > 1
+        {
+            prior.push(Term::about(&LAG, 0), LAG_PRIOR);
+        }
         for (parameter, &deviation) in own_load.into_iter().flatten().enumerate() {
             prior.push(Term::about(&OWN_LOAD, moved.len() - 1).of(parameter), deviation);
         }
@@ -190,11 +197,11 @@ impl Prior {
         std::array::from_fn(|k| inverse.as_ref().map_or(0.0, |inverse| rho * rho * inverse[(k, k)]))
     }
 
-    /// The background at `strengths`.
+    /// The background at `strengths`; `None` if no column has a strength.
     pub fn at(&self, strengths: &Strengths) -> Option<Background> {
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&OWN_LOAD) => 1.0,
-            term if term.is(&LAG) => f64::from(u8::from(!strengths.without_lag)),
+            term if term.is(&LAG) => f64::from(u8::from(!strengths.is_lag_known)),
             term if term.is(&INERTIAL_PARAMETER) => strengths.of_link(term.of[0]),
             term if term.is(&GAIN_LAW) => {
                 let is_left_out = |joint: usize| {
@@ -252,5 +259,40 @@ impl Prior {
             friction: strengths.friction,
             is_lag_alone,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The prior of two links of 2 kg, of whose joints `moving` move.
+    fn prior(moving: usize) -> Prior {
+        let link = [2.0, 0.0, 0.0, 0.2, 0.1, 0.0, 0.1, 0.0, 0.0, 0.1];
+        let speed: Vec<f64> = (0..2).map(|joint| f64::from(u8::from(joint < moving))).collect();
+        Prior::new(
+            &[link, link].concat(),
+            &[0.05; 2],
+            &[1.0; 2],
+            &speed,
+            &[vec![0], vec![0]],
+            None,
+        )
+    }
+
+    #[test]
+    fn the_lag_is_in_every_background_unless_it_is_known_or_one_joint_moves() {
+        let exact = Strengths::none(2);
+        let background = prior(2).at(&exact).expect("there is a lag");
+        assert_eq!((background.columns.len(), background.is_lag_alone), (1, true));
+        assert!((background.precision[(0, 0)] * LAG_PRIOR.powi(2) - 1.0).abs() < 1e-12);
+        assert!(prior(2).at(&exact.without_lag()).is_none());
+        assert!(prior(1).at(&exact).is_none());
+        let wrong = Strengths {
+            links: vec![0.1; 2],
+            ..exact
+        };
+        let background = prior(2).at(&wrong).expect("links differ");
+        assert_eq!((background.columns.len(), background.is_lag_alone), (21, false));
     }
 }

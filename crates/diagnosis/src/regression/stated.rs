@@ -33,7 +33,7 @@ impl Stated {
         Strengths {
             links: vec![self.links.unwrap_or(0.0); links],
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
-            without_lag: self.is_lag_known,
+            is_lag_known: self.is_lag_known,
             ..Strengths::none(links)
         }
     }

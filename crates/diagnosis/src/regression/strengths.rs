@@ -31,7 +31,7 @@ pub struct Strengths {
     /// is not in the background: an effect must explain the difference.
     pub impossible_constants: Vec<usize>,
     /// Whether the torques come exactly when the positions do, so that their lag is not in the background.
-    pub without_lag: bool,
+    pub is_lag_known: bool,
 }
 
 /// A part of the background that [`Strengths::weaker`] reduces.
@@ -65,7 +65,7 @@ impl fmt::Display for Strengths {
 }
 
 impl Strengths {
-    /// No background: the nominal model.
+    /// No background but the lag of all torques: the nominal model.
     pub fn none(links: usize) -> Self {
         Self {
             links: vec![0.0; links],
@@ -77,7 +77,16 @@ impl Strengths {
             nameless_offsets: Vec::new(),
             named_constants: Vec::new(),
             impossible_constants: Vec::new(),
-            without_lag: false,
+            is_lag_known: false,
+        }
+    }
+
+    /// These strengths without a lag of all torques.
+    #[must_use]
+    pub fn without_lag(&self) -> Self {
+        Self {
+            is_lag_known: true,
+            ..self.clone()
         }
     }
 
@@ -306,7 +315,7 @@ impl Strengths {
         self.friction > 0.0 || self.gain > 0.0
     }
 
-    /// Whether there is no background.
+    /// Whether there is no background but the lag of all torques.
     pub fn is_none(&self) -> bool {
         !self.is_of_joints() && self.offset == 0.0 && self.nameless_offsets.is_empty() && self.strongest() == 0.0
     }

@@ -7,8 +7,8 @@ use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 
-/// `selected` with viscous friction and a drag with an exponent of two, in place of each drag with a smaller exponent that does not explain
-/// more than both. A smaller exponent resembles viscous friction, which most joints have, and has as many sizes as both.
+/// `selected` with viscous friction and a drag with an exponent of two, in place of each drag with a smaller exponent, unless that drag
+/// explains more than the two together. A smaller exponent resembles viscous friction, which most joints have, and has as many sizes as both.
 pub fn beside_viscous_friction(study: &mut Study, mut selected: Selection) -> Selection {
     for drag in selected.set.clone() {
         let Candidate { hypothesis, joint, .. } = study.candidates[drag];
@@ -25,7 +25,8 @@ pub fn beside_viscous_friction(study: &mut Study, mut selected: Selection) -> Se
             other.hypothesis == viscous && other.joint == Some(joint) && study.always_acts(c)
         };
         let is_there = selected.set.iter().any(is_viscous) || study.has_known(viscous, Some(joint));
-        let Some(friction) = (0..study.candidates.len()).find(is_viscous).filter(|_| !is_there) else {
+        let mut allowed = study.allowed().into_iter();
+        let Some(friction) = allowed.find(is_viscous).filter(|_| !is_there) else {
             continue;
         };
         let textbook = study.add(hypothesis, Some(joint), vec![Term::on(&DRAG, joint).sized([TURBULENT])]);

@@ -275,7 +275,7 @@ impl Study {
         self.force
     }
 
-    /// The background of every fit, if there is one.
+    /// The background of every fit; `None` if nothing is in it.
     pub fn background(&self) -> Option<Background> {
         self.prior.at(&self.strengths)
     }

@@ -12,7 +12,7 @@ use crate::search::study::Study;
 use crate::selection::of_noise::may_be_noise;
 use crate::thresholds::{
     ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
-    OF_BEYOND, SHAKES_FOR, WORSE,
+    OF_BEYOND, WORSE,
 };
 
 mod held_out;
@@ -173,15 +173,15 @@ fn lasting(problem: &Problem<'_>, selected: &Selection) -> Option<usize> {
         .map(|(c, _)| *c)
 }
 
-/// A contact that is over soon after its recording has begun: the arm may still shake from being released or switched on.
+/// A contact that is over soon after its recording has begun.
 fn at_the_beginning(problem: &Problem<'_>, selected: &Selection) -> Option<usize> {
     let motions = &problem.data.motions;
     let is_early = |&c: &usize| {
-        let Some([from, to]) = problem.candidates[c].window(problem.table) else {
-            return false;
-        };
-        let recording = motions.recording_at(0.5 * (from + to));
-        recording.is_some_and(|recording| to - motions.span(recording)[0] < SHAKES_FOR)
+        let window = problem.candidates[c].window(problem.table);
+        window.is_some_and(|[_, to]| {
+            let recording = motions.recording_at(to);
+            recording.is_some_and(|recording| motions.is_at_a_beginning(recording, to))
+        })
     };
     selected.set.iter().copied().find(is_early)
 }

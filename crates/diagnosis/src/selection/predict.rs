@@ -20,7 +20,7 @@ pub fn augmented(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64
 }
 
 /// The residual of the exported model: the links' inertial parameters, the constant torques and the named effects, without the
-/// background's corrections of friction and torque constants and the load of some recordings, which no file holds.
+/// background's corrections of friction and torque constants, the lag of all torques and the load of some recordings, which no file holds.
 pub fn exported(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64> {
     let is_exported = |term: &Term| {
         let kept_apart = [&OWN_FRICTION, &FRICTION_CURVE, &GAIN, &LAG, &OWN_LOAD];

@@ -177,11 +177,9 @@ fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool 
     };
     let joints = (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0);
     let lags = joints.map(|joint| Term::on(&LATE, joint).sized([UNIT_LAG])).collect();
-    let with = study.fit_with(&columns(&|_| true), Vec::new(), &fit.weights);
-    let lagging = study.fit_with(
-        &columns(&|column| !candidate.columns.contains(&column)),
-        lags,
-        &fit.weights,
-    );
+    let strengths = study.strengths.without_lag();
+    let fitted = |columns: &[usize], more| study.table_and_fit_at(&strengths, columns, more, &fit.weights).1;
+    let with = fitted(&columns(&|_| true), Vec::new());
+    let lagging = fitted(&columns(&|column| !candidate.columns.contains(&column)), lags);
     lagging.loss <= with.loss
 }
