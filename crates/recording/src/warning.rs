@@ -228,13 +228,11 @@ impl fmt::Display for Warning {
             ),
             Self::Held { rows, samples, held } => write!(
                 f,
-                "each sample stands in {held} rows: of {rows} rows {samples} are used, each sample once (record at the rate at \
-                 which the drive samples)"
+                "each sample stands in {held} rows: of {rows} rows {samples} are used, each sample once (record at the drive's rate)"
             ),
             Self::HeldPositions { rows, samples, held } => write!(
                 f,
-                "the positions of all joints change in one of {held} rows only, and other signals more often: of {rows} rows the {samples} with \
-                 new positions are used (record all at the rate at which the positions are measured)"
+                "positions change in one of {held} rows only, other signals more often: {samples} of {rows} rows, with new positions, are used"
             ),
             Self::ClockRestart {
                 line,

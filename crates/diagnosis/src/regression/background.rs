@@ -201,7 +201,7 @@ impl Prior {
     pub fn at(&self, strengths: &Strengths) -> Option<Background> {
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&OWN_LOAD) => 1.0,
-            term if term.is(&LAG) => f64::from(u8::from(!strengths.is_lag_known)),
+            term if term.is(&LAG) => f64::from(u8::from(strengths.lag)),
             term if term.is(&INERTIAL_PARAMETER) => strengths.of_link(term.of[0]),
             term if term.is(&GAIN_LAW) => {
                 let is_left_out = |joint: usize| {
@@ -281,16 +281,18 @@ mod tests {
     }
 
     #[test]
-    fn the_lag_is_in_every_background_unless_it_is_known_or_one_joint_moves() {
+    fn a_lag_is_a_background_of_its_own_unless_one_joint_moves() {
         let exact = Strengths::none(2);
-        let background = prior(2).at(&exact).expect("there is a lag");
+        assert!(prior(2).at(&exact).is_none());
+        let late = Strengths { lag: true, ..exact };
+        let background = prior(2).at(&late).expect("there is a lag");
         assert_eq!((background.columns.len(), background.is_lag_alone), (1, true));
         assert!((background.precision[(0, 0)] * LAG_PRIOR.powi(2) - 1.0).abs() < 1e-12);
-        assert!(prior(2).at(&exact.without_lag()).is_none());
-        assert!(prior(1).at(&exact).is_none());
+        assert!(prior(2).at(&late.without_lag()).is_none());
+        assert!(prior(1).at(&late).is_none());
         let wrong = Strengths {
             links: vec![0.1; 2],
-            ..exact
+            ..late
         };
         let background = prior(2).at(&wrong).expect("links differ");
         assert_eq!((background.columns.len(), background.is_lag_alone), (21, false));

@@ -24,7 +24,8 @@ impl Stated {
             links: options.urdf_accuracy,
             gain: options.torque_accuracy,
             is_friction_plain: false,
-            is_lag_known: options.torque_lag.is_some(),
+            // A hypothesis is fitted to the recordings as they are.
+            is_lag_known: options.torque_lag.is_some() || options.only.is_some(),
         }
     }
 
@@ -33,7 +34,6 @@ impl Stated {
         Strengths {
             links: vec![self.links.unwrap_or(0.0); links],
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
-            is_lag_known: self.is_lag_known,
             ..Strengths::none(links)
         }
     }
@@ -55,5 +55,6 @@ impl Stated {
         (self.links.is_none() || strengths.links == first.links)
             && (self.gain.is_none() || strengths.gain == first.gain)
             && (!self.is_friction_plain || strengths.friction == 0.0)
+            && (!self.is_lag_known || !strengths.lag)
     }
 }

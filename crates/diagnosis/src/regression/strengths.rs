@@ -30,8 +30,8 @@ pub struct Strengths {
     /// The joints whose torque constant would differ from one by more than [`MOST_CONSTANT`](crate::thresholds::MOST_CONSTANT), so that it
     /// is not in the background: an effect must explain the difference.
     pub impossible_constants: Vec<usize>,
-    /// Whether the torques come exactly when the positions do, so that their lag is not in the background.
-    pub is_lag_known: bool,
+    /// Whether a lag of all torques is in the background.
+    pub lag: bool,
 }
 
 /// A part of the background that [`Strengths::weaker`] reduces.
@@ -60,12 +60,13 @@ impl fmt::Display for Strengths {
             self.friction,
             self.offset,
             self.gain
-        )
+        )?;
+        if self.lag { write!(f, "; lag") } else { Ok(()) }
     }
 }
 
 impl Strengths {
-    /// No background but the lag of all torques: the nominal model.
+    /// No background: the nominal model.
     pub fn none(links: usize) -> Self {
         Self {
             links: vec![0.0; links],
@@ -77,7 +78,7 @@ impl Strengths {
             nameless_offsets: Vec::new(),
             named_constants: Vec::new(),
             impossible_constants: Vec::new(),
-            is_lag_known: false,
+            lag: false,
         }
     }
 
@@ -85,7 +86,7 @@ impl Strengths {
     #[must_use]
     pub fn without_lag(&self) -> Self {
         Self {
-            is_lag_known: true,
+            lag: false,
             ..self.clone()
         }
     }
@@ -145,6 +146,7 @@ impl Strengths {
         part(self.friction, PER_BACKGROUND_PART)
             + part(self.offset, PER_BACKGROUND_PART)
             + part(self.gain, constants)
+            + part(f64::from(u8::from(self.lag)), PER_BACKGROUND_PART)
             + part(common, PER_BACKGROUND_PART)
             + unlikely
             + PER_LINK_APART * (apart + several) as f64
@@ -206,6 +208,10 @@ impl Strengths {
         for gain in GAIN_STRENGTHS {
             add(Self { gain, ..self.clone() });
         }
+        add(Self {
+            lag: !self.lag,
+            ..self.clone()
+        });
         list
     }
 
@@ -315,7 +321,7 @@ impl Strengths {
         self.friction > 0.0 || self.gain > 0.0
     }
 
-    /// Whether there is no background but the lag of all torques.
+    /// Whether there is no background that corrects the model, beside a lag of the torques.
     pub fn is_none(&self) -> bool {
         !self.is_of_joints() && self.offset == 0.0 && self.nameless_offsets.is_empty() && self.strongest() == 0.0
     }

@@ -46,7 +46,6 @@ impl OwnLoad {
         }
         let wide = Strengths {
             links: vec![1.0; dof],
-            is_lag_known: true,
             ..Strengths::none(dof)
         };
         let background = prior.at(&wide)?;

@@ -15,7 +15,6 @@ pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let dof = study.data.arm.dof();
     let strengths = Strengths {
         links: vec![FREE_INERTIALS; dof],
-        is_lag_known: true,
         ..Strengths::none(dof)
     };
     let is_part = |&candidate: &usize| {
