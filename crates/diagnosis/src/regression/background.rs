@@ -14,7 +14,7 @@ use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, LAG, OFFSET, OWN_FRI
 
 use crate::regression::bodies::{PER_LINK, Quadratic, physical, possible_part, prior_about};
 use crate::regression::strengths::Strengths;
-use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, LAG_PRIOR, NAMELESS_OFFSET};
+use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, LAG_PRIOR, LEAST_LAGGING, NAMELESS_OFFSET};
 
 /// The prior of the background at strength one: the first columns of a table.
 #[derive(Clone, Debug, Default)]
@@ -109,11 +109,11 @@ impl Prior {
             prior.push(Term::on(&OFFSET, joint), level);
             prior.push(Term::on(&GAIN_LAW, joint), GAIN_PRIOR);
         }
-        // On one joint, a lag is a delay of its drive.
+        // On one or two joints, a lag may be a delay of their drives.
         if (0..moved.len())
             .filter(|&joint| torque[joint] > 0.0 && speed[joint] > 0.0)
             .count()
-            > 1
+            >= LEAST_LAGGING
         {
             prior.push(Term::about(&LAG, 0), LAG_PRIOR);
         }
@@ -266,35 +266,29 @@ impl Prior {
 mod tests {
     use super::*;
 
-    /// The prior of two links of 2 kg, of whose joints `moving` move.
+    /// The prior of three links of 2 kg, of whose joints `moving` move.
     fn prior(moving: usize) -> Prior {
         let link = [2.0, 0.0, 0.0, 0.2, 0.1, 0.0, 0.1, 0.0, 0.0, 0.1];
-        let speed: Vec<f64> = (0..2).map(|joint| f64::from(u8::from(joint < moving))).collect();
-        Prior::new(
-            &[link, link].concat(),
-            &[0.05; 2],
-            &[1.0; 2],
-            &speed,
-            &[vec![0], vec![0]],
-            None,
-        )
+        let speed: Vec<f64> = (0..3).map(|joint| f64::from(u8::from(joint < moving))).collect();
+        let moved = [vec![0], vec![0], vec![0]];
+        Prior::new(&link.repeat(3), &[0.05; 3], &[1.0; 3], &speed, &moved, None)
     }
 
     #[test]
-    fn a_lag_is_a_background_of_its_own_unless_one_joint_moves() {
-        let exact = Strengths::none(2);
-        assert!(prior(2).at(&exact).is_none());
+    fn a_lag_is_a_background_of_its_own_unless_few_joints_move() {
+        let exact = Strengths::none(3);
+        assert!(prior(3).at(&exact).is_none());
         let late = Strengths { lag: true, ..exact };
-        let background = prior(2).at(&late).expect("there is a lag");
+        let background = prior(3).at(&late).expect("there is a lag");
         assert_eq!((background.columns.len(), background.is_lag_alone), (1, true));
         assert!((background.precision[(0, 0)] * LAG_PRIOR.powi(2) - 1.0).abs() < 1e-12);
-        assert!(prior(2).at(&late.without_lag()).is_none());
-        assert!(prior(1).at(&late).is_none());
+        assert!(prior(3).at(&late.without_lag()).is_none());
+        assert!(prior(2).at(&late).is_none());
         let wrong = Strengths {
-            links: vec![0.1; 2],
+            links: vec![0.1; 3],
             ..late
         };
-        let background = prior(2).at(&wrong).expect("links differ");
-        assert_eq!((background.columns.len(), background.is_lag_alone), (21, false));
+        let background = prior(3).at(&wrong).expect("links differ");
+        assert_eq!((background.columns.len(), background.is_lag_alone), (31, false));
     }
 }

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::thresholds::{
-    BEYOND_STRONGEST, CONSTANTS_BESIDE_LINKS, FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LINK_STRENGTHS,
-    OFFSET_STRENGTHS, OWN_STRENGTHS, PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
+    BEYOND_STRONGEST, CONSTANTS_BESIDE_LINKS, FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LAG_COST,
+    LINK_STRENGTHS, OFFSET_STRENGTHS, OWN_STRENGTHS, PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
 };
 
 /// The strengths of the parts of the background, as standard deviations; zero switches a part off.
@@ -146,7 +146,7 @@ impl Strengths {
         part(self.friction, PER_BACKGROUND_PART)
             + part(self.offset, PER_BACKGROUND_PART)
             + part(self.gain, constants)
-            + part(f64::from(u8::from(self.lag)), PER_BACKGROUND_PART)
+            + part(f64::from(u8::from(self.lag)), LAG_COST)
             + part(common, PER_BACKGROUND_PART)
             + unlikely
             + PER_LINK_APART * (apart + several) as f64
