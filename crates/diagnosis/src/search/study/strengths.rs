@@ -1,17 +1,19 @@
 //! Selects the strengths of the background together with the effects, by the gain of the score.
 
 use effects::Scales;
+use effects::background::LAG;
 use rayon::prelude::*;
 
 use super::Study;
 use crate::data::motion::{Chunk, Motions};
 use crate::regression::bodies::PER_LINK;
-use crate::regression::fit::Products;
+use crate::regression::fit::{Fit, Products};
 use crate::regression::strengths::{Part, Strengths};
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
-    AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, HOPELESS_EXCHANGE, LINK_STRENGTHS, MOST_CONSTANT,
-    MOST_DEVIATIONS, MOST_LATER_GAIN, MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS, PER_IMITATION,
+    AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, HOPELESS_EXCHANGE, LINK_STRENGTHS, LONGEST_SHORT_LAG,
+    MOST_CONSTANT, MOST_DEVIATIONS, MOST_LATER_GAIN, MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS,
+    PER_IMITATION,
 };
 
 /// The largest number of effects that may together replace a part of the background.
@@ -335,6 +337,13 @@ impl Study {
         selected
     }
 
+    /// Whether the lag of the torques in a fit is one that such torques may have, if there is one.
+    fn has_short_lag(&self, fit: &Fit) -> bool {
+        let background = fit.columns.iter().zip(&fit.coefficients).take(fit.background);
+        let is_lag = |&(&column, _): &(&usize, &f64)| self.table.terms[column].is(&LAG);
+        background.filter(is_lag).all(|(_, lag)| lag.abs() <= LONGEST_SHORT_LAG)
+    }
+
     /// The best of the strengths `others`, with `selected` fitted again, if they are better.
     fn strengthened(&self, selected: &Selection, others: Vec<Strengths>) -> Option<(Strengths, Selection)> {
         let trials: Vec<(Strengths, Selection)> = others
@@ -352,6 +361,7 @@ impl Study {
                 };
                 (strengths, next)
             })
+            .filter(|(_, next)| self.has_short_lag(&next.fit))
             .collect();
         let (strengths, next) = trials.into_iter().min_by(|a, b| a.1.score.total_cmp(&b.1.score))?;
         if next.score >= selected.score - 1e-6 {
