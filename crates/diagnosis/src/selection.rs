@@ -14,6 +14,7 @@ use crate::selection::predict::{augmented, exported};
 use crate::thresholds::MOST_REFUSED;
 
 pub mod bootstrap;
+pub mod breakaway;
 pub mod constant_torques;
 pub mod coupling;
 pub mod direction;

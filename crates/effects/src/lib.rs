@@ -71,8 +71,8 @@ pub mod friction {
     pub use coulomb::CoulombFriction;
     pub use drag::{DRAG, QuadraticDrag, TURBULENT};
     pub use load_dependent::LoadDependentFriction;
-    pub use stribeck::StribeckFriction;
-    pub use thermal::ThermalDrift;
+    pub use stribeck::{StribeckFriction, velocity as stribeck_velocity};
+    pub use thermal::{ThermalDrift, WARMING};
     pub use viscous::ViscousFriction;
 }
 
@@ -141,6 +141,7 @@ pub mod joint {
 /// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
 pub mod unmodelled {
     mod history;
+    mod load;
     mod other_position;
     mod other_speed;
     mod own_position;
@@ -149,6 +150,7 @@ pub mod unmodelled {
     mod time;
 
     pub use history::History;
+    pub use load::Load;
     pub use other_position::OtherPosition;
     pub use other_speed::OtherSpeed;
     pub use own_position::OwnPosition;
@@ -200,6 +202,7 @@ pub static UNMODELLED: &[&dyn EffectKind] = &[
     &unmodelled::OtherPosition,
     &unmodelled::OtherSpeed,
     &unmodelled::History,
+    &unmodelled::Load,
     &unmodelled::Product,
     &unmodelled::Periodic,
     &unmodelled::Time,

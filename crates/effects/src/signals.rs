@@ -7,6 +7,8 @@ pub struct Scales {
     pub speed: Vec<f64>,
     /// The velocity deadband: below it a joint rests, and the sign of its velocity is undetermined (rad/s or m/s).
     pub rest: Vec<f64>,
+    /// The speed within which the smooth sign changes (rad/s or m/s).
+    pub turning: Vec<f64>,
     /// The middle of the positions (rad or m).
     pub middle: Vec<f64>,
     /// The difference of the highest and the lowest position (rad or m).
@@ -16,9 +18,9 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// A smooth sign, whose slope at zero corresponds to the noise of the velocity.
+    /// A smooth sign, which does not change with the noise of the velocity.
     pub fn sign(&self, joint: usize, qd: f64) -> f64 {
-        let x = qd / (0.3 * self.rest[joint]);
+        let x = qd / self.turning[joint];
         x / (1.0 + x * x).sqrt()
     }
 

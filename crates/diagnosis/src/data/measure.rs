@@ -8,7 +8,8 @@ use crate::data::motion::{Chunk, Motions, SourceRecording};
 use crate::data::rigid::Rigid;
 use crate::data::statistics::{deviation, eliminate, mean, quantile_of_sorted};
 use crate::thresholds::{
-    DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, ROUNDING, SPEED_QUANTILE,
+    DEAD, NEEDED_QUANTILE, NOISE_ALONE, RANGE_QUANTILES, REST, REST_NOISE, ROUNDING, SPEED_QUANTILE, TURNING,
+    TURNING_NOISE,
 };
 
 /// The number of poses of a section at which the mass matrix is evaluated to judge the noise.
@@ -197,6 +198,7 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
     let mut scales = Scales {
         speed: Vec::new(),
         rest: Vec::new(),
+        turning: Vec::new(),
         middle: Vec::new(),
         range: Vec::new(),
         torque,
@@ -212,6 +214,9 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
             .fold(0.0, f64::max);
         scales.speed.push(speed);
         scales.rest.push((REST * speed).max(REST_NOISE * noise).max(1e-6));
+        scales
+            .turning
+            .push((TURNING * speed).max(TURNING_NOISE * noise).max(1e-7));
         let (low, high) = (
             quantile_of_sorted(&positions, RANGE_QUANTILES.0),
             quantile_of_sorted(&positions, RANGE_QUANTILES.1),

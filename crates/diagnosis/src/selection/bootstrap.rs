@@ -11,7 +11,7 @@ use crate::data::statistics::{NORMAL_95, quantile_of_sorted};
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
-use crate::thresholds::{BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, MOST_BLOCKS, UNEVEN};
+use crate::thresholds::{BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, LARGEST_CORRECTION, MOST_BLOCKS, UNEVEN};
 
 /// The relative step of a derivative by a size.
 const STEP: f64 = 0.02;
@@ -146,7 +146,7 @@ pub fn resample(study: &mut Study, selected: &Selection) -> Resampled {
     let scaled = scaled(study, selected);
     let p = columns.len() + all.len();
     let systems = systems(study, selected, &columns, &all);
-    let prior = PriorDraws::new(study, p);
+    let prior = PriorDraws::new(study, columns.len(), all.len());
     let total = systems
         .iter()
         .fold((prior.precision.clone(), prior.pull.clone()), |(a, b), (c, d)| {
@@ -237,10 +237,16 @@ struct PriorDraws {
     pull: DVector<f64>,
     /// The Cholesky factor of K.
     lower: DMatrix<f64>,
+    /// The number of corrections of sizes.
+    sizes: usize,
 }
 
 impl PriorDraws {
-    fn new(study: &Study, p: usize) -> Self {
+    /// For `columns` of coefficients and the corrections of `sizes`, which are relative: the search found the sizes, so that a correction by
+    /// more than [`LARGEST_CORRECTION`] is unlikely. Without it, a gap's coefficient and its size, which have almost the same column, would
+    /// cancel each other with any values.
+    fn new(study: &Study, columns: usize, sizes: usize) -> Self {
+        let p = columns + sizes;
         let background = study.background();
         let mut pull = DVector::zeros(p);
         if let Some(background) = &background {
@@ -250,19 +256,31 @@ impl PriorDraws {
         let own = background.map_or_else(|| DMatrix::zeros(0, 0), |b| b.precision);
         let mut precision = DMatrix::zeros(p, p);
         precision.view_mut((0, 0), own.shape()).copy_from(&own);
+        for size in columns..p {
+            precision[(size, size)] = LARGEST_CORRECTION.powi(-2);
+        }
         let lower = own.clone().cholesky().map_or(own, nalgebra::Cholesky::unpack);
-        Self { precision, pull, lower }
+        Self {
+            precision,
+            pull,
+            lower,
+            sizes,
+        }
     }
 
     /// K ξ for the right-hand side of `p` columns, ξ ~ N(0, K⁻¹).
     fn draw(&self, state: &mut u64, p: usize) -> DVector<f64> {
         let n = self.lower.nrows();
         // Box and Muller 1958.
-        let normal = DVector::from_fn(n, |_, _| {
-            (-2.0 * uniform(state).ln()).sqrt() * (std::f64::consts::TAU * uniform(state)).cos()
-        });
+        let mut normal = |count: usize| {
+            DVector::from_fn(count, |_, _| {
+                (-2.0 * uniform(state).ln()).sqrt() * (std::f64::consts::TAU * uniform(state)).cos()
+            })
+        };
         let mut right = DVector::zeros(p);
-        right.rows_mut(0, n).copy_from(&(&self.lower * normal));
+        right.rows_mut(0, n).copy_from(&(&self.lower * normal(n)));
+        let sizes = normal(self.sizes) / LARGEST_CORRECTION;
+        right.rows_mut(p - self.sizes, self.sizes).copy_from(&sizes);
         right
     }
 }

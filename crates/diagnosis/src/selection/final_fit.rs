@@ -7,6 +7,7 @@ use crate::report::JointFit;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
+use crate::selection::breakaway;
 use crate::selection::constant_torques;
 use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
@@ -28,6 +29,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
         relinearise(study, judged, false);
         torque_constants::name_those_beyond_tolerance(study, judged, &mut constants_tried);
         make_possible(study, judged);
+        breakaway::at_reversals(study, judged);
         let before = judged.named.set.len();
 
         guard(study, judged);

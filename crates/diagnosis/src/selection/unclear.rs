@@ -1,6 +1,8 @@
 //! Effects that the final fit contradicts, or whose size or onset it leaves open.
 
+use effects::background::OWN_FRICTION;
 use effects::drive::{LATE, UNIT_LAG};
+use effects::friction::{ThermalDrift, WARMING};
 use effects::{Against, Effect, Term};
 use torque::Corrected;
 
@@ -14,7 +16,7 @@ use crate::selection::payload::is_of_no_mass;
 use crate::selection::predict::{errors_with, poor, structured};
 use crate::selection::torque_constants;
 use crate::selection::variation::is_variation;
-use crate::thresholds::{AGAINST_BOTH, CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED};
+use crate::thresholds::{AGAINST_BOTH, CHANGE_BESIDE_RESIDUAL, CLEAR_THOUGH_UNDETERMINED, LEAST_WITHIN_RECORDINGS};
 
 /// Why an effect is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +35,8 @@ pub enum Unclear {
     OneJoint,
     /// Recordings of one side of the change differ by as much.
     Variation,
+    /// Friction of its own in each recording explains as much.
+    OwnFriction,
 }
 
 impl Unclear {
@@ -46,6 +50,7 @@ impl Unclear {
             Self::Lag => "a lag of its joints' torques explains as much",
             Self::OneJoint => "a torque on one of its joints alone explains more",
             Self::Variation => "recordings of one side of the change differ among themselves by as much",
+            Self::OwnFriction => "another friction in each recording explains as much",
         }
     }
 }
@@ -64,6 +69,12 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
         // The correction of its sizes may make the effect impossible, for example by a negative level.
         let is_impossible =
             |named: &Named| Corrected::new(&study.data.arm, std::slice::from_ref(&named.effect)).is_err();
+        // A torque constant that changed was wrong by as much before, so that its tolerance does not matter.
+        let accuracy = if study.always_acts(member.candidate) {
+            accuracy
+        } else {
+            0.0
+        };
         // The intervals of its parameters, or the other effects, exclude it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
@@ -105,6 +116,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::OneJoint)
         } else if is_variation(study, judged, member) {
             Some(Unclear::Variation)
+        } else if may_be_own_friction(study, judged, member) {
+            Some(Unclear::OwnFriction)
         } else {
             None
         }
@@ -182,4 +195,29 @@ fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool 
     let with = fitted(&columns(&|_| true), Vec::new());
     let lagging = fitted(&columns(&|column| !candidate.columns.contains(&column)), lags);
     lagging.loss <= with.loss
+}
+
+/// Whether the effect is friction that falls with time, and another level of friction in each recording explains as much: the friction of
+/// a drive is never quite the same in two recordings, and of two or three levels one in two or six falls by chance.
+fn may_be_own_friction(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    let (true, Some(joint)) = (candidate.hypothesis.is(&ThermalDrift), candidate.joint) else {
+        return false;
+    };
+    let fit = &judged.named.fit;
+    let is_warming = |column: usize| study.table.terms[column].is(&WARMING) && candidate.columns.contains(&column);
+    let columns: Vec<usize> = fit
+        .selected()
+        .iter()
+        .copied()
+        .filter(|&column| !is_warming(column))
+        .collect();
+    let moves = |&recording: &usize| study.data.fitted[recording] && study.table.joints[joint].count[recording] > 0;
+    let recordings = (0..study.data.fitted.len()).filter(moves);
+    let levels = recordings
+        .map(|recording| Term::on(&OWN_FRICTION, joint).of(recording))
+        .collect();
+    let with = study.fit_with(fit.selected(), Vec::new(), &fit.weights);
+    let level = study.fit_with(&columns, levels, &fit.weights);
+    level.loss - with.loss < LEAST_WITHIN_RECORDINGS
 }

@@ -55,6 +55,15 @@ pub const PARTLY: f64 = 0.8;
 /// The least share of an effect in the joint's torque with which it is named although another explains nearly as much in its place.
 /// Source: simulated cases of four sets; of twelve such names below 3 %, none was right.
 pub const LEAST_UNDECIDED: f64 = 0.03;
+/// Stribeck friction that only the rows near reversals show must explain this much more than Coulomb friction (nats). Source: `prove`,
+/// seeds 28113003 and 28113004.
+pub const LEAST_AT_REVERSALS: f64 = 15.0;
+/// Such friction has at least this Stribeck velocity, in multiples of the velocity deadband. Source: `prove`, seeds 28113003 and 28113004: ten
+/// false ones with 0.6 to 1.1, an examiner's false one with 2.0, true ones with 2.0, 4.4 and 5.5.
+pub const SLOWEST_AT_REVERSALS: f64 = 2.5;
+/// Friction that falls with time must explain this much more than another level of friction in each recording (nats). Source: an examiner's
+/// simulated cases.
+pub const LEAST_WITHIN_RECORDINGS: f64 = 0.0;
 /// How much more than its best alternative a smaller effect explains at least (nats), and a payload or a factor on inertials of any
 /// size. Source: simulated cases of seven sets; of six such payloads and factors, none was right.
 pub const UNDECIDED_NATS: f64 = 2.0;
@@ -126,6 +135,9 @@ pub const PAIRED_RIVALS: usize = 3;
 pub const PARTNERS: usize = 2;
 /// The number of resamplings of an interval. Source: first diagnosis.
 pub const DRAWS: usize = 120;
+/// The standard deviation of the correction of a size in the final fit, relative to the size that the search found. Source: definition; a
+/// correction by more is beyond the linearisation.
+pub const LARGEST_CORRECTION: f64 = 1.0;
 /// The largest number of blocks of a resampling. Source: first diagnosis.
 pub const MOST_BLOCKS: usize = 80;
 /// The least number of torque constants, more than half of all, that deviate alike if they have one common cause and

@@ -87,8 +87,8 @@ const LEAST_SHOWN: f64 = 0.25;
 /// 19 of 19 sizes are within 15 % of the truth.
 const FULLY_SHOWN: f64 = 0.6;
 /// Where the rows show only a part, the additional breakaway friction may be larger by this factor, with a Stribeck velocity that is smaller
-/// by it. Source: the same cases, 3.3; the three-joint arm at 0.01 rad/s, 5.5.
-const EXTRAPOLATED: f64 = 6.0;
+/// by it. Source: the same cases, 3.3; the three-joint arm at 0.01 rad/s, 11.
+const EXTRAPOLATED: f64 = 12.0;
 /// A row is slow if more than this part of the additional breakaway friction remains there.
 const FADED: f64 = 0.5;
 /// The part of the moving rows that may be slow: otherwise the effect is no friction at low speed.
