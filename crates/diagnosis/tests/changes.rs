@@ -102,6 +102,32 @@ fn a_constant_torque_that_went_away_is_found() {
     }
 }
 
+/// One torque constant that changed by less than torque constants are usually wrong: it was wrong by the same amount before. The URDF's
+/// masses are wrong as well.
+#[test]
+fn a_torque_constant_that_changed_a_little_is_found() {
+    let robot = [1.06, 0.95, 1.04].into_iter().enumerate();
+    let robot = robot.fold(trio(), |arm, (link, factor)| arm.with_scaled_link(link, factor));
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        if is_after(motion) {
+            tau[SHOULDER] *= 1.04;
+        }
+    };
+    let recorded = |variant| regular(&support::recorded(&robot, variant, 16.0, &injected));
+    let diagnosis = diagnosed(&(0..4).map(recorded).collect::<Vec<_>>());
+    let changes = changes(&diagnosis);
+    let [(finding, effect, joint, change)] = &changes[..] else {
+        panic!("{:?}", sentences(&diagnosis));
+    };
+    assert_eq!(
+        (*effect, *joint, *change),
+        ("torque_scale", Some("shoulder"), Change::Added)
+    );
+    let factor = finding.parameters["factor"].value;
+    assert!((factor / 1.04 - 1.0).abs() < 0.005, "{factor}");
+}
+
 /// If friction differs between recordings anyway, the recordings of today do not test what only the earlier ones have.
 #[test]
 fn friction_that_fell_is_found_although_it_varies() {

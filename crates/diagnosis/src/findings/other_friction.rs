@@ -1,7 +1,7 @@
 //! The sizes of friction beside other friction of the joint that is not named.
 
-use effects::Term;
 use effects::friction::{QuadraticDrag, TURBULENT, ViscousFriction};
+use effects::{Acts, Term};
 
 use crate::report::{Finding, Parameter};
 use crate::search::candidate::Hypothesis;
@@ -37,21 +37,23 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
     ) else {
         return;
     };
-    // What changed, changed alone.
-    if !study.always_acts(member.candidate) {
+    // What sets in within the recordings, sets in alone; what changed since those from before may have changed beside the other friction.
+    if !study.always_acts(member.candidate) && !study.changes(member.candidate) {
         return;
     }
+    let acts = Acts::of(&study.terms(member.candidate));
+    let acts_alike = |index: usize| Acts::of(&study.terms(index)) == acts;
     let selected = &last.judged.named.set;
     let is_free = |index: usize| {
         let other = &study.candidates[index];
         let contains = |c: usize| {
             let this = &study.candidates[c];
-            this.joint == other.joint && this.hypothesis.contains(other.hypothesis)
+            this.joint == other.joint && this.hypothesis.contains(other.hypothesis) && acts_alike(c)
         };
         let is_there = || selected.iter().any(|&c| contains(c) || problem.exclude(c, index));
         other.joint == candidate.joint
-            && study.always_acts(index)
-            && !study.has_known(other.hypothesis, other.joint)
+            && acts_alike(index)
+            && !(study.always_acts(index) && study.has_known(other.hypothesis, other.joint))
             && !is_there()
     };
     let is_other = |index: &usize| {

@@ -98,6 +98,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         selected = connection::in_place_of_delays(study, selected);
         selected = drag::beside_viscous_friction(study, selected);
     }
+    let selected = study.with_friction_that_changed(selected);
     let selected = study.with_constants_that_changed(selected);
     let selected = study.without_imitations(selected);
     let selected = study.with_payload_for_last_link(selected);

@@ -28,6 +28,7 @@ mod about;
 mod anew;
 mod constants;
 mod formed;
+mod friction_changes;
 mod links;
 mod notes;
 mod payloads;
