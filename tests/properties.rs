@@ -7,11 +7,7 @@ use proptest::test_runner::RngSeed;
 pub fn config() -> ProptestConfig {
     let asked = ProptestConfig::default();
     ProptestConfig {
-        cases: if std::env::var_os("PROPTEST_CASES").is_some() {
-            asked.cases
-        } else {
-            64
-        },
+        cases: if std::env::var_os("PROPTEST_CASES").is_some() { asked.cases } else { 64 },
         rng_seed: match asked.rng_seed {
             RngSeed::Random => RngSeed::Fixed(1),
             seed => seed,

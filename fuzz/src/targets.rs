@@ -9,10 +9,7 @@ use study::Source;
 use study::effect_file::EffectFile;
 
 /// The shape of a scenario, as the program reads it; the keys are not looked at here.
-#[allow(
-    dead_code,
-    reason = "the program's own module, of which only the reading is used here"
-)]
+#[allow(dead_code, reason = "the program's own module, of which only the reading is used here")]
 #[path = "../../crates/testbed/src/scenario/raw.rs"]
 mod raw;
 
@@ -51,14 +48,7 @@ fn recorded(bytes: &[u8], map: Option<&ColumnMap>) {
         let _ = warning.to_string();
     }
     let Ok((regular, _)) = recording.regular() else { return };
-    assert!(
-        regular
-            .q
-            .iter()
-            .chain(&regular.tau)
-            .flatten()
-            .all(|value| value.is_finite())
-    );
+    assert!(regular.q.iter().chain(&regular.tau).flatten().all(|value| value.is_finite()));
     let _ = Quality::of(&recording, &regular);
 }
 
@@ -78,11 +68,7 @@ pub fn column_map(bytes: &[u8]) {
 /// Reads a scenario.
 pub fn scenario(bytes: &[u8]) {
     let Some(text) = text(bytes) else { return };
-    let source = Source {
-        name: "scenario".to_owned(),
-        path: "scenario.toml".into(),
-        text: text.to_owned(),
-    };
+    let source = Source { name: "scenario".to_owned(), path: "scenario.toml".into(), text: text.to_owned() };
     let _ = raw::parse(&source);
 }
 

@@ -44,34 +44,19 @@ fn diagnosed(sandbox: &Sandbox) -> serde_json::Value {
 fn what_is_injected_is_found() {
     let sandbox = Sandbox::new();
     sandbox.write("trio.urdf", crate::diagnose_made::URDF);
-    let text = EFFECTS
-        .split("\n[[effects]]\neffect = \"payload\"")
-        .next()
-        .unwrap_or(EFFECTS);
+    let text = EFFECTS.split("\n[[effects]]\neffect = \"payload\"").next().unwrap_or(EFFECTS);
     sandbox.write("spring.toml", text);
     let arguments = words("conceal --robot trio.urdf --effects spring.toml --out cases");
     let printed = sandbox.succeed(&arguments);
     assert!(printed.contains("cases/truth/case_000.json"), "{printed}");
     assert_eq!(
         sandbox.list("cases/case_000"),
-        [
-            "held_out.csv",
-            "robot.urdf",
-            "train_1.csv",
-            "train_2.csv",
-            "train_3.csv"
-        ]
+        ["held_out.csv", "robot.urdf", "train_1.csv", "train_2.csv", "train_3.csv"]
     );
     let truth = sandbox.json("cases/truth/case_000.json");
     let spring = &truth["concealed"][0];
-    assert_eq!(
-        (&spring["effect"], &spring["form"]),
-        (&"spring".into(), &"hardening".into())
-    );
-    assert!(
-        spring["expressed_share"].as_f64().is_some_and(|share| share > 0.03),
-        "{spring}"
-    );
+    assert_eq!((&spring["effect"], &spring["form"]), (&"spring".into(), &"hardening".into()));
+    assert!(spring["expressed_share"].as_f64().is_some_and(|share| share > 0.03), "{spring}");
 
     // A second time nothing is touched.
     let refused = sandbox.refuse(&arguments);
@@ -79,10 +64,8 @@ fn what_is_injected_is_found() {
 
     let found = diagnosed(&sandbox);
     let findings = found["findings"].as_array().expect("there is a list");
-    let named: Vec<String> = findings
-        .iter()
-        .map(|finding| format!("{} {}", finding["effect"], finding["joint"]))
-        .collect();
+    let named: Vec<String> =
+        findings.iter().map(|finding| format!("{} {}", finding["effect"], finding["joint"])).collect();
     assert_eq!(named, ["\"spring\" \"elbow\""], "{found}");
 }
 
@@ -91,20 +74,14 @@ fn the_same_seed_makes_the_same_bytes() {
     let sandbox = Sandbox::new();
     sandbox.write("trio.urdf", crate::diagnose_made::URDF);
     for (out, jobs) in [("one", "1"), ("two", "2")] {
-        sandbox.succeed(&words(&format!(
-            "conceal --robot trio.urdf --seed 2 --cases 2 --jobs {jobs} --out {out}"
-        )));
+        sandbox.succeed(&words(&format!("conceal --robot trio.urdf --seed 2 --cases 2 --jobs {jobs} --out {out}")));
     }
     let read = |path: &str| std::fs::read(sandbox.path(path)).expect("the file is there");
     for case in sandbox.list("one/truth") {
         assert_eq!(read(&format!("one/truth/{case}")), read(&format!("two/truth/{case}")));
         let name = case.trim_end_matches(".json");
         for file in sandbox.list(&format!("one/{name}")) {
-            assert_eq!(
-                read(&format!("one/{name}/{file}")),
-                read(&format!("two/{name}/{file}")),
-                "{name}/{file}"
-            );
+            assert_eq!(read(&format!("one/{name}/{file}")), read(&format!("two/{name}/{file}")), "{name}/{file}");
         }
     }
     assert_eq!(sandbox.list("one").len(), 3);
@@ -119,10 +96,7 @@ fn what_cannot_be_concealed_is_refused_with_its_line() {
         assert!(error.contains(part), "{error}");
     };
     refuse(&EFFECTS.replace("elbow", "axis9"), "effects.toml:5");
-    refuse(
-        &EFFECTS.replace("elbow", "axis4").replace("hardening", "air spring"),
-        "gas spring, hardening, knee",
-    );
+    refuse(&EFFECTS.replace("elbow", "axis4").replace("hardening", "air spring"), "gas spring, hardening, knee");
     refuse(&EFFECTS.replace("elbow", "axis4").replace("mass = 1.0\n", ""), "mass");
     refuse(&EFFECTS.replace("stiffness", "stifness"), "effects.toml:6");
     let onset = |time: &str| EFFECTS.replace("elbow", "axis4").replace("12.0", time);
@@ -141,10 +115,7 @@ fn what_cannot_be_concealed_is_refused_with_its_line() {
 #[test]
 fn without_effects_or_seed_both_are_offered() {
     let message = Sandbox::new().refuse(&["conceal", "--out", "made"]);
-    assert!(
-        message.contains("--seed N") && message.contains("--effects FILE"),
-        "{message}"
-    );
+    assert!(message.contains("--seed N") && message.contains("--effects FILE"), "{message}");
 }
 
 /// Where all links are wrong, a mass at the wrist's centre, which the last joints do not feel, may be any link's before them: it was
@@ -159,10 +130,7 @@ fn a_wrong_link_before_the_wrist_is_no_payload() {
     ));
     let diagnosis = diagnosed(&sandbox);
     let findings = diagnosis["findings"].as_array().expect("there are findings");
-    let names: Vec<&str> = findings
-        .iter()
-        .filter_map(|finding| finding["effect"].as_str())
-        .collect();
+    let names: Vec<&str> = findings.iter().filter_map(|finding| finding["effect"].as_str()).collect();
     assert!(names.contains(&"inertial_parameters"), "{names:?}");
     assert!(!names.contains(&"payload"), "{names:?}");
 }

@@ -12,9 +12,7 @@ fn friction(motion: &Motion, tau: &mut [f64]) {
 }
 
 fn pairs<'a>(list: &[(&'a str, &'a str)]) -> Vec<(String, String)> {
-    list.iter()
-        .map(|(effect, joint)| ((*effect).to_owned(), (*joint).to_owned()))
-        .collect()
+    list.iter().map(|(effect, joint)| ((*effect).to_owned(), (*joint).to_owned())).collect()
 }
 
 /// The held-out error of a joint, nominal and augmented.
@@ -35,12 +33,7 @@ fn friction_is_named_with_its_size_and_proved_on_the_recording_held_out() {
     let expected = pairs(&[("coulomb_friction", "shoulder"), ("viscous_friction", "shoulder")]);
     assert_eq!(names(&found), expected);
     is_found(finding(&found, "coulomb_friction", "shoulder"), "level", 2.5, 0.03);
-    is_found(
-        finding(&found, "viscous_friction", "shoulder"),
-        "coefficient",
-        1.8,
-        0.03,
-    );
+    is_found(finding(&found, "viscous_friction", "shoulder"), "coefficient", 1.8, 0.03);
     let [nominal, augmented] = held_out(&found, "shoulder");
     assert!(augmented < 0.1 * nominal, "{nominal} → {augmented}");
     for joint in ["turn", "shoulder", "elbow"] {
@@ -76,13 +69,9 @@ fn the_json_has_the_fields_that_others_read() {
         assert!(entry["would_be_seen_above"].is_object());
     }
     for joint in ["turn", "shoulder", "elbow"] {
-        for number in [
-            "torque_std",
-            "noise",
-            "held_out_nrmse_nominal",
-            "held_out_nrmse_augmented",
-            "held_out_nrmse_learned",
-        ] {
+        for number in
+            ["torque_std", "noise", "held_out_nrmse_nominal", "held_out_nrmse_augmented", "held_out_nrmse_learned"]
+        {
             assert!(found["fit"][joint][number].is_f64(), "{number} of {joint}");
         }
     }
@@ -108,14 +97,8 @@ fn the_corrected_model_is_written_read_back_and_leaves_nothing_to_find() {
         assert_eq!(effect[parameter].as_float(), said);
     }
     let urdf = case.text("corrected.urdf");
-    let dynamics = urdf
-        .lines()
-        .find(|line| line.contains("<dynamics"))
-        .expect("a line of friction");
-    assert!(
-        dynamics.contains("damping=\"1.8") || dynamics.contains("damping=\"1.7"),
-        "{dynamics}"
-    );
+    let dynamics = urdf.lines().find(|line| line.contains("<dynamics")).expect("a line of friction");
+    assert!(dynamics.contains("damping=\"1.8") || dynamics.contains("damping=\"1.7"), "{dynamics}");
     assert!(dynamics.contains("friction=\"2."), "{dynamics}");
     arm::Arm::from_urdf(case.path("corrected.urdf")).expect("it is an arm still");
     let page = case.text("page.html");
@@ -136,9 +119,7 @@ fn two_runs_give_the_same_bytes_whatever_the_threads() {
     let case = Case::new(&trio(), &friction);
     let run = |name: &str, jobs: &str| {
         let files = ["json", "html", "toml"].map(|kind| format!("{name}.{kind}"));
-        case.diagnose(&[
-            "--json", &files[0], "--report", &files[1], "--model", &files[2], "--jobs", jobs,
-        ]);
+        case.diagnose(&["--json", &files[0], "--report", &files[1], "--model", &files[2], "--jobs", jobs]);
         files.map(|file| case.text(&file))
     };
     let first = run("one", "1");
@@ -183,10 +164,7 @@ fn a_payload_is_weighed() {
     assert!(named("payload"), "{list:?}");
     assert_eq!(list.len(), 3, "{list:?}");
     let findings = found["findings"].as_array().expect("a list");
-    let payload = findings
-        .iter()
-        .find(|finding| finding["effect"] == "payload")
-        .expect("it is there");
+    let payload = findings.iter().find(|finding| finding["effect"] == "payload").expect("it is there");
     assert!(payload["joint"].is_null());
     is_found(payload, "mass", 1.2, 0.1);
 }

@@ -23,18 +23,9 @@ fn check(case: &str) {
     let shared = root().join("../shared/blind");
     let folder = shared.join(case);
     let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
-    let files = [
-        "robot.urdf",
-        "train_1.csv",
-        "train_2.csv",
-        "train_3.csv",
-        "held_out.csv",
-    ]
-    .map(path);
+    let files = ["robot.urdf", "train_1.csv", "train_2.csv", "train_3.csv", "held_out.csv"].map(path);
     let sandbox = Sandbox::new();
-    let mut command = vec![
-        "diagnose", "--robot", &files[0], "--train", &files[1], &files[2], &files[3],
-    ];
+    let mut command = vec!["diagnose", "--robot", &files[0], "--train", &files[1], &files[2], &files[3]];
     command.extend(["--held-out", &files[4], "--json", "d.json"]);
     sandbox.succeed(&command);
     let found = sandbox.json("d.json");
@@ -48,10 +39,7 @@ fn check(case: &str) {
 pub fn compare(case: &str, truth: &Value, found: &Value) {
     let injected = truth["concealed"].as_array().expect("a list").iter().map(|effect| {
         let name = renamed(effect["effect"].as_str().expect("a name"));
-        (
-            name.to_owned(),
-            effect["joint"].as_str().unwrap_or("whole arm").to_owned(),
-        )
+        (name.to_owned(), effect["joint"].as_str().unwrap_or("whole arm").to_owned())
     });
     let (unknown, known): (BTreeSet<_>, BTreeSet<_>) = injected.partition(|(name, _)| name.ends_with("_unknown"));
     let is_special = |(name, _): &&(String, String)| !BASELINE.contains(&name.as_str());
@@ -61,19 +49,13 @@ pub fn compare(case: &str, truth: &Value, found: &Value) {
     assert_eq!(named, hidden, "{case}");
     let refused = found["unexplained"].as_array().expect("a list");
     for (what, joint) in &unknown {
-        assert!(
-            refused.iter().any(|left| left["joint"] == **joint),
-            "{case}: {what} on {joint}"
-        );
+        assert!(refused.iter().any(|left| left["joint"] == **joint), "{case}: {what} on {joint}");
     }
     assert!(!unknown.is_empty() || refused.is_empty(), "{case}: {refused:?}");
     for (joint, fit) in found["fit"].as_object().expect("a map") {
         let error = |key: &str| fit[key].as_f64().expect("a number");
         let [nominal, augmented] = [error("held_out_nrmse_nominal"), error("held_out_nrmse_augmented")];
-        assert!(
-            augmented <= nominal,
-            "{case}: {joint} is worse: {nominal} → {augmented}"
-        );
+        assert!(augmented <= nominal, "{case}: {joint} is worse: {nominal} → {augmented}");
     }
 }
 

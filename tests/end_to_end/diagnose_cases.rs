@@ -16,15 +16,7 @@ fn check(case: &str) -> Value {
     let [train, held_out, truth] =
         ["train_1.csv", "held_out.csv", "truth.json"].map(|name| path(&format!("{case}/{name}")));
     let sandbox = Sandbox::new();
-    let inputs = [
-        "diagnose",
-        "--robot",
-        &robot,
-        "--train",
-        &train,
-        "--held-out",
-        &held_out,
-    ];
+    let inputs = ["diagnose", "--robot", &robot, "--train", &train, "--held-out", &held_out];
     sandbox.succeed(&[&inputs[..], &["--torques-only", "--json", "d.json"]].concat());
     let found = sandbox.json("d.json");
     let text = std::fs::read_to_string(truth).expect("the truth is there");
@@ -35,15 +27,10 @@ fn check(case: &str) -> Value {
 /// Checks that parameters are within a part `tolerance` of the truth.
 fn is_sized(found: &Value, effect: &str, truth: &[(&str, f64)], tolerance: f64) {
     let mut findings = found["findings"].as_array().expect("a list").iter();
-    let finding = findings
-        .find(|finding| finding["effect"] == effect)
-        .expect("it is there");
+    let finding = findings.find(|finding| finding["effect"] == effect).expect("it is there");
     for (key, truth) in truth {
         let value = finding["parameters"][key]["value"].as_f64().expect("a number");
-        assert!(
-            (value / truth - 1.0).abs() < tolerance,
-            "{key}: {value} instead of {truth}"
-        );
+        assert!((value / truth - 1.0).abs() < tolerance, "{key}: {value} instead of {truth}");
     }
 }
 
@@ -51,9 +38,7 @@ fn is_sized(found: &Value, effect: &str, truth: &[(&str, f64)], tolerance: f64) 
 /// where the background acts, the interval allows a URDF that is unevenly wrong.
 fn holds(found: &Value, effect: &str, key: &str, truth: f64) {
     let mut findings = found["findings"].as_array().expect("a list").iter();
-    let finding = findings
-        .find(|finding| finding["effect"] == effect)
-        .expect("it is there");
+    let finding = findings.find(|finding| finding["effect"] == effect).expect("it is there");
     let end = |k: usize| finding["parameters"][key]["ci95"][k].as_f64().expect("a number");
     assert!(
         end(0) < truth && truth < end(1) && end(0) * truth > 0.0 && end(1) - end(0) < 1.5 * truth.abs(),
@@ -103,33 +88,16 @@ fn what_is_outside_the_catalogue_gets_no_name() {
 /// Recordings of two cases with different loads: the answer begins with it, and names the folders that distinguish the files.
 #[test]
 fn recordings_with_another_load_come_first() {
-    let [robot, loaded, train, held_out] = [
-        "arm.urdf",
-        "spring_and_payload/train_1.csv",
-        "friction/train_1.csv",
-        "friction/held_out.csv",
-    ]
-    .map(path);
+    let [robot, loaded, train, held_out] =
+        ["arm.urdf", "spring_and_payload/train_1.csv", "friction/train_1.csv", "friction/held_out.csv"].map(path);
     let sandbox = Sandbox::new();
-    let inputs = [
-        "diagnose",
-        "--robot",
-        &robot,
-        "--train",
-        &loaded,
-        &train,
-        "--held-out",
-        &held_out,
-    ];
+    let inputs = ["diagnose", "--robot", &robot, "--train", &loaded, &train, "--held-out", &held_out];
     let text = sandbox.succeed(&[&inputs[..], &["--torques-only", "--json", "d.json"]].concat());
     let load = &sandbox.json("d.json")["different_load"];
     assert_eq!(load["recordings"], serde_json::json!([loaded]));
     let end = |k: usize| load["more_than_others"]["ci95"][k].as_f64().expect("a number");
     assert!(end(0) < 1.0 && 1.0 < end(1), "{load}");
-    assert!(
-        text.starts_with("spring_and_payload/train_1.csv was made with"),
-        "{text}"
-    );
+    assert!(text.starts_with("spring_and_payload/train_1.csv was made with"), "{text}");
 }
 
 /// What changed since the recordings from before is told in the first sentence, in both directions, and the corrected model of today
@@ -138,37 +106,14 @@ fn recordings_with_another_load_come_first() {
 fn the_corrected_model_is_that_of_today() {
     let robot = path("arm.urdf");
     for (before, today, phrase, change, has_payload) in [
-        (
-            "friction",
-            "spring_and_payload",
-            "absent in the recordings from",
-            "added",
-            true,
-        ),
-        (
-            "spring_and_payload",
-            "friction",
-            "in the recordings from before",
-            "removed",
-            false,
-        ),
+        ("friction", "spring_and_payload", "absent in the recordings from", "added", true),
+        ("spring_and_payload", "friction", "in the recordings from before", "removed", false),
     ] {
-        let [before, train, held_out] = [
-            format!("{before}/train_1.csv"),
-            format!("{today}/train_1.csv"),
-            format!("{today}/held_out.csv"),
-        ]
-        .map(|name| path(&name));
+        let [before, train, held_out] =
+            [format!("{before}/train_1.csv"), format!("{today}/train_1.csv"), format!("{today}/held_out.csv")]
+                .map(|name| path(&name));
         let sandbox = Sandbox::new();
-        let inputs = [
-            "--robot",
-            &robot,
-            "--train",
-            &train,
-            "--held-out",
-            &held_out,
-            "--torques-only",
-        ];
+        let inputs = ["--robot", &robot, "--train", &train, "--held-out", &held_out, "--torques-only"];
         let run = |further: &[&str]| sandbox.succeed(&[&["diagnose"], &inputs[..], further].concat());
         let told = run(&["--before", &before, "--json", "d.json", "--model", "m.toml"]);
         let told = told.split_whitespace().collect::<Vec<_>>().join(" ");

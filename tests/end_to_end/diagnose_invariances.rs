@@ -24,10 +24,7 @@ impl Rows {
         let mut lines = text.lines();
         let header = lines.next().expect("a header").split(',').map(str::to_owned).collect();
         let row = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        Self {
-            header,
-            rows: lines.map(row).collect(),
-        }
+        Self { header, rows: lines.map(row).collect() }
     }
 
     fn each(&mut self, change: impl Fn(&mut Vec<f64>)) {
@@ -51,12 +48,7 @@ struct Variant<'a> {
 
 impl Default for Variant<'_> {
     fn default() -> Self {
-        Self {
-            case: CASE,
-            urdf: &|text| text,
-            rows: &|_| (),
-            map: None,
-        }
+        Self { case: CASE, urdf: &|text| text, rows: &|_| (), map: None }
     }
 }
 
@@ -70,15 +62,8 @@ impl Variant<'_> {
             (self.rows)(&mut rows);
             sandbox.write(name, &rows.text());
         }
-        let mut arguments = vec![
-            "diagnose",
-            "--robot",
-            "arm.urdf",
-            "--train",
-            "train_1.csv",
-            "--held-out",
-            "held_out.csv",
-        ];
+        let mut arguments =
+            vec!["diagnose", "--robot", "arm.urdf", "--train", "train_1.csv", "--held-out", "held_out.csv"];
         arguments.extend(["--torques-only", "--json", "d.json"]);
         if let Some(map) = &self.map {
             sandbox.write("map.toml", map);
@@ -92,13 +77,10 @@ impl Variant<'_> {
 /// Every value by its place in the diagnosis.
 fn flat(value: &Value, place: &str, into: &mut BTreeMap<String, Value>) {
     match value {
-        Value::Object(entries) => entries
-            .iter()
-            .for_each(|(key, value)| flat(value, &format!("{place}.{key}"), into)),
-        Value::Array(list) => list
-            .iter()
-            .enumerate()
-            .for_each(|(k, value)| flat(value, &format!("{place}[{k}]"), into)),
+        Value::Object(entries) => entries.iter().for_each(|(key, value)| flat(value, &format!("{place}.{key}"), into)),
+        Value::Array(list) => {
+            list.iter().enumerate().for_each(|(k, value)| flat(value, &format!("{place}[{k}]"), into))
+        }
         value => {
             into.insert(place.to_owned(), value.clone());
         }
@@ -139,13 +121,7 @@ fn is_scaled(a: &Value, b: &Value, factor: f64) -> bool {
 fn form_names_and_units_change_nothing() {
     let plain = Variant::default().diagnose();
     let doubled = |rows: &mut Rows| rows.rows = rows.rows.iter().flat_map(|row| [row.clone(), row.clone()]).collect();
-    let of = |rows: &dyn Fn(&mut Rows)| {
-        Variant {
-            rows,
-            ..Variant::default()
-        }
-        .diagnose()
-    };
+    let of = |rows: &dyn Fn(&mut Rows)| Variant { rows, ..Variant::default() }.diagnose();
     assert_eq!(of(&doubled)["findings"], plain["findings"]);
     is_same("rows written twice", &plain, &of(&doubled), nothing);
     let turned = |rows: &mut Rows| {
@@ -173,21 +149,15 @@ fn form_names_and_units_change_nothing() {
         },
         ..Variant::default()
     };
-    let text = JOINTS
-        .iter()
-        .zip(others)
-        .fold(renamed.diagnose().to_string(), |text, (to, from)| {
-            // As keys and values, and in sentences.
-            text.replace(&format!("\"{from}\""), &format!("\"{to}\""))
-                .replace(&format!("{from}:"), &format!("{to}:"))
-                .replace(&format!(" {from}"), &format!(" {to}"))
-        });
-    is_same(
-        "joints renamed",
-        &plain,
-        &serde_json::from_str(&text).expect("it is JSON"),
-        |_, a, b| a.is_string() && b.as_str().is_some_and(|text| text.contains(' ')),
-    );
+    let text = JOINTS.iter().zip(others).fold(renamed.diagnose().to_string(), |text, (to, from)| {
+        // As keys and values, and in sentences.
+        text.replace(&format!("\"{from}\""), &format!("\"{to}\""))
+            .replace(&format!("{from}:"), &format!("{to}:"))
+            .replace(&format!(" {from}"), &format!(" {to}"))
+    });
+    is_same("joints renamed", &plain, &serde_json::from_str(&text).expect("it is JSON"), |_, a, b| {
+        a.is_string() && b.as_str().is_some_and(|text| text.contains(' '))
+    });
 
     let entry = |joint: &&str| {
         format!(
@@ -215,14 +185,7 @@ fn form_names_and_units_change_nothing() {
 fn a_clock_that_began_earlier_shifts_the_times_and_nothing_else() {
     let later = |rows: &mut Rows| rows.each(|row| row[0] += 1000.5);
     for case in [CASE, "contact"] {
-        let diagnose = |rows: &dyn Fn(&mut Rows)| {
-            Variant {
-                case,
-                rows,
-                ..Variant::default()
-            }
-            .diagnose()
-        };
+        let diagnose = |rows: &dyn Fn(&mut Rows)| Variant { case, rows, ..Variant::default() }.diagnose();
         let (plain, shifted) = (diagnose(&|_| ()), diagnose(&later));
         is_same("time shifted", &plain, &shifted, |place, a, b| {
             let is_time = place.contains(".time[") || place.contains(".start.");
@@ -238,12 +201,7 @@ fn a_clock_that_began_earlier_shifts_the_times_and_nothing_else() {
 fn warming_is_found_on_a_clock_that_began_long_before() {
     let warming = |seconds: f64| -> Value {
         let later = move |rows: &mut Rows| rows.each(|row| row[0] += seconds);
-        let diagnosis = Variant {
-            case: "warming",
-            rows: &later,
-            ..Variant::default()
-        }
-        .diagnose();
+        let diagnosis = Variant { case: "warming", rows: &later, ..Variant::default() }.diagnose();
         let findings = diagnosis["findings"].as_array().expect("findings").clone();
         let is_it = |finding: &Value| finding["effect"] == "thermal_drift";
         findings.into_iter().find(is_it).expect("warming is found")
@@ -320,12 +278,7 @@ fn fixed_frames_change_nothing() {
         },
         ..Variant::default()
     };
-    is_same(
-        "on a stand",
-        &Variant::default().diagnose(),
-        &on_a_stand.diagnose(),
-        nothing,
-    );
+    is_same("on a stand", &Variant::default().diagnose(), &on_a_stand.diagnose(), nothing);
     let with_a_tool = Variant {
         case: "warming",
         urdf: &|text| {
@@ -337,9 +290,6 @@ fn fixed_frames_change_nothing() {
         },
         ..Variant::default()
     };
-    let bare = Variant {
-        case: "warming",
-        ..Variant::default()
-    };
+    let bare = Variant { case: "warming", ..Variant::default() };
     is_same("with a flange", &bare.diagnose(), &with_a_tool.diagnose(), nothing);
 }

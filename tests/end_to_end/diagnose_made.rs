@@ -92,10 +92,8 @@ pub fn arguments<'a>(further: &[&'a str]) -> Vec<&'a str> {
 pub fn names(diagnosis: &Value) -> Vec<(String, String)> {
     let text = |value: &Value| value.as_str().unwrap_or("whole arm").to_owned();
     let findings = diagnosis["findings"].as_array().expect("a list");
-    let mut names: Vec<_> = findings
-        .iter()
-        .map(|finding| (text(&finding["effect"]), text(&finding["joint"])))
-        .collect();
+    let mut names: Vec<_> =
+        findings.iter().map(|finding| (text(&finding["effect"]), text(&finding["joint"]))).collect();
     names.sort();
     names
 }
@@ -114,10 +112,7 @@ pub fn is_found(finding: &Value, parameter: &str, truth: f64, tolerance: f64) {
     let found = &finding["parameters"][parameter];
     let number = |value: &Value| value.as_f64().expect("a number");
     let value = number(&found["value"]);
-    assert!(
-        (value / truth - 1.0).abs() <= tolerance,
-        "{parameter} is {value} instead of {truth}"
-    );
+    assert!((value / truth - 1.0).abs() <= tolerance, "{parameter} is {value} instead of {truth}");
     let (low, high) = (number(&found["ci95"][0]), number(&found["ci95"][1]));
     assert!(low < truth && truth < high, "{truth} is not in {low} … {high}");
     assert!(found["unit"].is_string());

@@ -40,27 +40,14 @@ fn numbers_of_rows_are_no_milliseconds() {
 fn one_joint_in_degrees_or_off_by_a_quarter_and_two_swapped_torques_prevent_a_diagnosis() {
     let number = |cell: &String| cell.parse::<f64>().expect("a number");
     let degrees = changed(|cells| cells[3] = number(&cells[3]).to_degrees().to_string());
-    says(
-        &doubted(&case(), &degrees),
-        &[
-            "elbow: the position is in degrees",
-            "[joints.elbow]",
-            "q_unit = \"deg\"",
-        ],
-    );
+    says(&doubted(&case(), &degrees), &["elbow: the position is in degrees", "[joints.elbow]", "q_unit = \"deg\""]);
     let turned = changed(|cells| cells[2] = (number(&cells[2]) + FRAC_PI_2).to_string());
     says(
         &doubted(&case(), &turned),
-        &[
-            "shoulder: the position's zero is off by π/2",
-            "q_offset = -1.5707963267948966",
-        ],
+        &["shoulder: the position's zero is off by π/2", "q_offset = -1.5707963267948966"],
     );
     let swapped = changed(|cells| cells.swap(5, 6));
-    says(
-        &doubted(&case(), &swapped),
-        &["the torques of shoulder and elbow seem swapped"],
-    );
+    says(&doubted(&case(), &swapped), &["the torques of shoulder and elbow seem swapped"]);
 }
 
 /// Of two joints, one may be in degrees alone; and its velocities may be in rad/s.
@@ -80,11 +67,7 @@ fn degrees_of_one_of_two_joints_are_not_attributed_to_both() {
         let map = sandbox.json("o.json")["files"][0]["column_map"].clone();
         let map = map.as_str().unwrap_or_else(|| panic!("no map: {map}"));
         let (joint1, joint2) = map.split_once("[joints.joint2]").expect("both joints");
-        let has: Vec<&str> = joint1
-            .lines()
-            .filter_map(|line| line.split_once("_unit"))
-            .map(|(key, _)| key)
-            .collect();
+        let has: Vec<&str> = joint1.lines().filter_map(|line| line.split_once("_unit")).map(|(key, _)| key).collect();
         let expected: Vec<&str> = units.iter().map(|key| key.trim_end_matches("_unit")).collect();
         assert_eq!(has, expected, "{map}");
         assert!(!joint2.contains("unit"), "{map}");
@@ -95,17 +78,12 @@ fn degrees_of_one_of_two_joints_are_not_attributed_to_both() {
 #[test]
 fn a_joint_without_torques_is_refused_for_its_empty_column() {
     let empty = changed(|cells| cells[5].clear());
-    let said = [
-        "a.csv: column \"tau_shoulder\" has no values",
-        "\"shoulder\" of trio",
-        "--lock shoulder=VALUE",
-    ];
+    let said = ["a.csv: column \"tau_shoulder\" has no values", "\"shoulder\" of trio", "--lock shoulder=VALUE"];
     says(&refused_with(&empty), &said);
     let case = case();
     case.sandbox.write("a.csv", &empty);
     let joint = |name: &str| format!("[joints.{name}]\nq = \"q_{name}\"\ntau = \"tau_{name}\"\n");
     let joints: String = ["turn", "shoulder", "elbow"].map(joint).concat();
-    case.sandbox
-        .write("map.toml", &format!("[time]\ncolumn = \"t\"\n\n{joints}"));
+    case.sandbox.write("map.toml", &format!("[time]\ncolumn = \"t\"\n\n{joints}"));
     says(&refused(&case, &["--map", "map.toml"]), &said);
 }

@@ -7,22 +7,12 @@ use crate::diagnose_refusals::{case, changed, refused, refused_command, refused_
 use crate::support::{says, words};
 
 /// One recording with a column map, by its torques.
-const ALONE: [&str; 7] = [
-    "--robot",
-    "robot.urdf",
-    "--train",
-    "a.csv",
-    "--map",
-    "map.toml",
-    "--torques-only",
-];
+const ALONE: [&str; 7] = ["--robot", "robot.urdf", "--train", "a.csv", "--map", "map.toml", "--torques-only"];
 
 /// What a diagnosis with `text` as `a.csv` says: no effect, and units first, in every form.
 pub fn doubted(case: &Case, text: &str) -> String {
     case.sandbox.write("a.csv", text);
-    let said = case
-        .sandbox
-        .succeed(&arguments(&words("--json o.json --report o.html --markdown o.md")));
+    let said = case.sandbox.succeed(&arguments(&words("--json o.json --report o.html --markdown o.md")));
     let json = case.sandbox.json("o.json");
     assert_eq!(json["verdict"], "units_first", "{said}");
     assert_eq!(json["findings"].as_array().map(Vec::len), Some(0));
@@ -64,16 +54,9 @@ fn torques_times_and_positions_in_another_unit_are_reported_with_the_remedy() {
     }
     says(
         &doubted_with(&scaled(4..7, 0.01)),
-        &[
-            "a.csv (in this recording alone): the torques of all joints",
-            "motor's side",
-            "gear",
-        ],
+        &["a.csv (in this recording alone): the torques of all joints", "motor's side", "gear"],
     );
-    says(
-        &doubted_with(&scaled(0..1, 1e3)),
-        &["its rows are 4.000 s apart", "unit = \"ms\"", "--map"],
-    );
+    says(&doubted_with(&scaled(0..1, 1e3)), &["its rows are 4.000 s apart", "unit = \"ms\"", "--map"]);
     // Of rows so far apart, next to none are held.
     let in_us = |torques: f64| {
         changed(|cells| {
@@ -98,10 +81,7 @@ fn files_in_each_others_places_are_reported() {
     let case = case();
     let mut command = arguments(&[]);
     command[2] = "a.csv";
-    says(
-        &refused_command(&case, &command),
-        &["a.csv:1", "is not a URDF", "begins with \"t,q_turn", "--train"],
-    );
+    says(&refused_command(&case, &command), &["a.csv:1", "is not a URDF", "begins with \"t,q_turn", "--train"]);
     case.sandbox.write("a.csv", &case.text("robot.urdf"));
     says(&refused(&case, &[]), &["a.csv:1: this is XML", "--robot"]);
     case.sandbox.write("empty.urdf", "");
@@ -121,20 +101,10 @@ fn a_map_that_lacks_a_joint_is_named() {
     case.sandbox.write("map.toml", &map);
     says(
         &refused(&case, &["--map", "map.toml"]),
-        &[
-            "map.toml: has no [joints.shoulder]",
-            "is [joints.sholder] meant?",
-            "add a table",
-        ],
+        &["map.toml: has no [joints.shoulder]", "is [joints.sholder] meant?", "add a table"],
     );
-    case.sandbox.write(
-        "map.toml",
-        &map.replace("q_elbow", "q_turn").replace("sholder", "shoulder"),
-    );
-    says(
-        &refused(&case, &["--map", "map.toml"]),
-        &["map.toml:10", "column \"q_turn\" is taken in line 4 already"],
-    );
+    case.sandbox.write("map.toml", &map.replace("q_elbow", "q_turn").replace("sholder", "shoulder"));
+    says(&refused(&case, &["--map", "map.toml"]), &["map.toml:10", "column \"q_turn\" is taken in line 4 already"]);
 }
 
 /// `a.csv` with numbers changed; time, three positions, three torques.
@@ -176,17 +146,13 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
         (turns, ["the positions are in turns", "q_unit = \"turn\""]),
         (currents, ["motor currents", "tau_scale = "]),
         (milliseconds, ["its rows are", "unit = \"ms\""]),
-        (
-            inverted,
-            ["the torques of all joints have the sign opposite", "tau_sign = -1"],
-        ),
+        (inverted, ["the torques of all joints have the sign opposite", "tau_sign = -1"]),
     ] {
         let case = case();
         says(&doubted(&case, &text), &parts);
         // Followed literally, on this recording alone, because the others are as they should be.
         let map = case.sandbox.json("o.json")["doubts"][0]["column_map"].clone();
-        case.sandbox
-            .write("map.toml", map.as_str().unwrap_or_else(|| panic!("no map: {parts:?}")));
+        case.sandbox.write("map.toml", map.as_str().unwrap_or_else(|| panic!("no map: {parts:?}")));
         let mut command = vec!["diagnose", "--json", "mended.json"];
         command.extend(ALONE);
         let said = case.sandbox.succeed(&command);
@@ -194,10 +160,7 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
         assert!(mended.get("doubts").is_none(), "{parts:?}: {said}");
         let friction = mended["findings"].as_array().expect("a list").iter();
         let mut on_shoulder = friction.filter(|finding| finding["effect"] == "coulomb_friction");
-        assert!(
-            on_shoulder.any(|finding| finding["joint"] == "shoulder"),
-            "{parts:?}: {said}"
-        );
+        assert!(on_shoulder.any(|finding| finding["joint"] == "shoulder"), "{parts:?}: {said}");
     }
     let counts = with_numbers(|row| row[1..4].iter_mut().for_each(|q| *q *= 5e4));
     says(&doubted_with(&counts), &["in no unit of angle", "q_scale", "gear"]);
@@ -207,10 +170,7 @@ fn where_all_joints_are_wrong_nothing_is_searched_and_the_map_mends_it() {
             *tau = 1e-3 * (time * (5.0 + joint as f64)).sin();
         }
     });
-    says(
-        &doubted_with(&other),
-        &["times the recorded one or more", "check units"],
-    );
+    says(&doubted_with(&other), &["times the recorded one or more", "check units"]);
 }
 
 #[test]
@@ -218,9 +178,7 @@ fn a_model_that_was_not_searched_is_not_written() {
     let case = case();
     let text = with_numbers(|row| row[4..].iter_mut().for_each(|tau| *tau *= 1e3));
     case.sandbox.write("a.csv", &text);
-    let message = case
-        .sandbox
-        .refuse(&arguments(&["--urdf", "o.urdf", "--json", "o.json"]));
+    let message = case.sandbox.refuse(&arguments(&["--urdf", "o.urdf", "--json", "o.json"]));
     says(&message, &["o.urdf: not written, because no effect was searched"]);
     assert_eq!(case.sandbox.json("o.json")["verdict"], "units_first");
     assert!(!case.path("o.urdf").exists());
@@ -239,14 +197,7 @@ fn numbered_joints_of_another_count_are_reported_with_a_map_of_the_first() {
     let header = "t,q[0],q[1],q[2],q[3],tau[0],tau[1],tau[2],tau[3]";
     case.sandbox.write("a.csv", &format!("{header}\n{rows}"));
     let said = refused(&case, &[]);
-    says(
-        &said,
-        &[
-            "its 4 joints have numbers",
-            "the arm of trio has 3 joints",
-            "q = \"q[0]\"",
-        ],
-    );
+    says(&said, &["its 4 joints have numbers", "the arm of trio has 3 joints", "q = \"q[0]\""]);
     case.sandbox.write("map.toml", &map_in(&said));
     case.sandbox.succeed(&[&["diagnose"], &ALONE[..]].concat());
 }
@@ -279,24 +230,15 @@ fn recordings_of_one_calendar_share_a_clock() {
     let residuals = case.text("r.csv");
     let last = residuals.lines().last().expect("a row");
     let mut cells = last.split(',').filter_map(|cell| cell.parse::<f64>().ok());
-    assert!(
-        cells.any(|cell| (7200.0..7210.0).contains(&cell)),
-        "two hours later: {last}"
-    );
+    assert!(cells.any(|cell| (7200.0..7210.0).contains(&cell)), "two hours later: {last}");
 }
 
 #[test]
 fn names_numbers_and_files_that_do_not_fit_the_flag_are_reported() {
     let case = case();
     let with = |flags: &[&str]| refused(&case, flags);
-    says(
-        &with(&["--only", "coulomb_fricton:elbow"]),
-        &["coulomb_fricton on elbow", "did you mean coulomb_friction?"],
-    );
+    says(&with(&["--only", "coulomb_fricton:elbow"]), &["coulomb_fricton on elbow", "did you mean coulomb_friction?"]);
     let output = case.sandbox.run(&arguments(&["--cutoff", "-3"]));
     assert!(String::from_utf8_lossy(&output.stderr).contains("give a frequency from 0.1 to 1000 Hz"));
-    says(
-        &with(&["--before", "a.csv"]),
-        &["a.csv: is given with --before and with --train"],
-    );
+    says(&with(&["--before", "a.csv"]), &["a.csv: is given with --before and with --train"]);
 }

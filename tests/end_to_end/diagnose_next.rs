@@ -26,9 +26,7 @@ fn the_proposed_motion_is_a_scenario_that_runs() {
     let page = case.text("page.html");
     assert!(page.contains("What to do next") && page.contains("a motion of 25 s"));
     // As it is, and on the user's own robot.
-    let ran = case
-        .sandbox
-        .succeed(&["--scenario", "next.toml", "--rerun", "off", "--out", "made"]);
+    let ran = case.sandbox.succeed(&["--scenario", "next.toml", "--rerun", "off", "--out", "made"]);
     assert!(ran.contains("rigid-body"), "{ran}");
     let recording = case.text("made/recording.csv");
     let header = recording.lines().next().expect("a header");
@@ -48,10 +46,7 @@ fn an_earlier_motion_does_not_stay_and_a_users_file_does() {
     case.sandbox.write("next.toml", earlier);
     let printed = case.diagnose(&["--json", "d.json", "--next", "next.toml"]);
     assert_eq!(case.sandbox.json("d.json")["next_experiment"]["duration"], Value::Null);
-    assert!(
-        printed.contains("removed: next.toml of an earlier diagnosis"),
-        "{printed}"
-    );
+    assert!(printed.contains("removed: next.toml of an earlier diagnosis"), "{printed}");
     assert!(!printed.contains("written: next.toml") && !case.sandbox.path("next.toml").exists());
     case.sandbox.write("task.toml", "title = \"mine\"\n");
     let refused = case.sandbox.refuse(&arguments(&["--next", "task.toml"]));

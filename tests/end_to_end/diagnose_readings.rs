@@ -10,16 +10,8 @@ use crate::diagnose_refusals::{case, changed};
 use crate::support::{Sandbox, root, says};
 
 /// One recording, by its torques.
-const DIAGNOSE: [&str; 8] = [
-    "diagnose",
-    "--robot",
-    "robot.urdf",
-    "--train",
-    "a.csv",
-    "--torques-only",
-    "--json",
-    "o.json",
-];
+const DIAGNOSE: [&str; 8] =
+    ["diagnose", "--robot", "robot.urdf", "--train", "a.csv", "--torques-only", "--json", "o.json"];
 
 #[test]
 fn zeros_signs_and_order_are_reported_with_the_map_that_mends_them() {
@@ -32,37 +24,23 @@ fn zeros_signs_and_order_are_reported_with_the_map_that_mends_them() {
         ),
         (
             with_numbers(|row| row[1 + ELBOW] -= FRAC_PI_2),
-            [
-                "elbow: the position's zero",
-                "off by -π/2 from the URDF's; correct it (q_offset = 1.5708",
-            ],
+            ["elbow: the position's zero", "off by -π/2 from the URDF's; correct it (q_offset = 1.5708"],
         ),
         (
             with_numbers(|row| row[1 + ELBOW] += PI),
-            [
-                "elbow: the position's zero",
-                "off by π from the URDF's; correct it (q_offset = 3.14",
-            ],
+            ["elbow: the position's zero", "off by π from the URDF's; correct it (q_offset = 3.14"],
         ),
         (
             with_numbers(|row| row.swap(4 + SHOULDER, 4 + ELBOW)),
             ["the torques of shoulder and elbow seem swapped", "tau = \"tau_elbow\""],
         ),
-        (
-            with_numbers(|row| row[4 + SHOULDER] *= -1.0),
-            ["shoulder: the torque", "tau_sign = -1"],
-        ),
+        (with_numbers(|row| row[4 + SHOULDER] *= -1.0), ["shoulder: the torque", "tau_sign = -1"]),
     ] {
         let said = inspected(&case, &text);
         says(&said, &parts);
-        says(
-            &said,
-            &["remains unexplained by the model, other inertial parameters and friction; without it"],
-        );
+        says(&said, &["remains unexplained by the model, other inertial parameters and friction; without it"]);
         case.sandbox.write("map.toml", &map_in(&said));
-        let mended = case
-            .sandbox
-            .succeed(&["inspect", "a.csv", "--robot", "robot.urdf", "--map", "map.toml"]);
+        let mended = case.sandbox.succeed(&["inspect", "a.csv", "--robot", "robot.urdf", "--map", "map.toml"]);
         assert!(!corrections.iter().any(|word| mended.contains(word)), "{said}{mended}");
     }
     // Times a thirtieth of what they are.
@@ -90,10 +68,7 @@ fn whole_turns_change_nothing() {
     assert_eq!(sentences(&turned), as_it_is);
     says(
         &inspected(&case, &turned),
-        &[
-            "shoulder: its positions lie 2 turns below the URDF's limits",
-            "were moved into them",
-        ],
+        &["shoulder: its positions lie 2 turns below the URDF's limits", "were moved into them"],
     );
 }
 
@@ -102,13 +77,8 @@ fn positions_in_each_others_columns_are_reported() {
     let case = case();
     let swapped = changed(|cells| cells.swap(2, 3));
     case.sandbox.write("a.csv", &swapped);
-    let text = case
-        .sandbox
-        .succeed(&["inspect", "a.csv", "b.csv", "--robot", "robot.urdf"]);
-    says(
-        &text,
-        &["the positions of shoulder and elbow seem swapped; correct the header"],
-    );
+    let text = case.sandbox.succeed(&["inspect", "a.csv", "b.csv", "--robot", "robot.urdf"]);
+    says(&text, &["the positions of shoulder and elbow seem swapped; correct the header"]);
     assert_eq!(text.matches("seem swapped").count(), 1, "{text}");
     // With velocities, these say which joint's they are.
     let mut last: Option<Vec<f64>> = None;
@@ -116,18 +86,13 @@ fn positions_in_each_others_columns_are_reported() {
         "t,q_turn,q_shoulder,q_elbow,tau_turn,tau_shoulder,tau_elbow,qd_turn,qd_elbow,qd_shoulder\n".to_owned();
     for line in swapped.lines().skip(1) {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        let before = last
-            .replace(cells.clone())
-            .unwrap_or_else(|| cells.iter().map(|cell| cell - 1e-9).collect());
+        let before = last.replace(cells.clone()).unwrap_or_else(|| cells.iter().map(|cell| cell - 1e-9).collect());
         let speed = |joint: usize| (cells[joint] - before[joint]) / (cells[0] - before[0]);
         rows += &format!("{line},{},{},{}\n", speed(1), speed(2), speed(3));
     }
     case.sandbox.write("a.csv", &rows);
     let text = case.sandbox.succeed(&["inspect", "a.csv", "--robot", "robot.urdf"]);
-    says(
-        &text,
-        &["shoulder: its recorded velocity is not its position's slope, but that of \"elbow\" is"],
-    );
+    says(&text, &["shoulder: its recorded velocity is not its position's slope, but that of \"elbow\" is"]);
 }
 
 #[test]
@@ -156,10 +121,7 @@ fn walls_ceilings_and_offsets_of_effects_are_no_mistakes() {
 #[test]
 #[ignore = "needs ../shared"]
 fn inverted_torques_of_real_robots_are_reported_and_the_map_mends_them() {
-    for (robot, names) in [
-        ("lwr4", &["run_2", "run_3", "run_1"][..]),
-        ("lbr_med7", &["may12_a", "may12_b"]),
-    ] {
+    for (robot, names) in [("lwr4", &["run_2", "run_3", "run_1"][..]), ("lbr_med7", &["may12_a", "may12_b"])] {
         let shared = root().join("../shared/recordings").join(robot);
         let sandbox = Sandbox::new();
         for name in names {
@@ -168,13 +130,11 @@ fn inverted_torques_of_real_robots_are_reported_and_the_map_mends_them() {
             let torques: Vec<bool> = header.split(',').map(|name| name.starts_with("tau_")).collect();
             let inverted = rows.lines().map(|row| {
                 let cells =
-                    row.split(',')
-                        .zip(&torques)
-                        .map(|(cell, is_torque)| match (cell.strip_prefix('-'), is_torque) {
-                            (_, false) => cell.to_owned(),
-                            (Some(cell), true) => cell.to_owned(),
-                            (None, true) => format!("-{cell}"),
-                        });
+                    row.split(',').zip(&torques).map(|(cell, is_torque)| match (cell.strip_prefix('-'), is_torque) {
+                        (_, false) => cell.to_owned(),
+                        (Some(cell), true) => cell.to_owned(),
+                        (None, true) => format!("-{cell}"),
+                    });
                 cells.collect::<Vec<_>>().join(",")
             });
             let rows: Vec<String> = inverted.collect();
@@ -183,15 +143,7 @@ fn inverted_torques_of_real_robots_are_reported_and_the_map_mends_them() {
         let urdf = shared.join("robot.urdf").to_string_lossy().into_owned();
         let files: Vec<String> = names.iter().map(|name| format!("{name}.csv")).collect();
         let (held_out, train) = files.split_last().expect("files");
-        let mut command = vec![
-            "diagnose",
-            "--robot",
-            &urdf,
-            "--json",
-            "o.json",
-            "--torques-only",
-            "--train",
-        ];
+        let mut command = vec!["diagnose", "--robot", &urdf, "--json", "o.json", "--torques-only", "--train"];
         command.extend(train.iter().map(String::as_str));
         command.extend(["--held-out", held_out]);
         sandbox.succeed(&command);
@@ -212,12 +164,9 @@ fn inverted_torques_of_real_robots_are_reported_and_the_map_mends_them() {
 fn what_is_not_certain_is_a_warning_in_every_report() {
     let case = case();
     // Beyond the elbow's limits, by less than a turn.
-    let text = case
-        .text("robot.urdf")
-        .replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.3\" upper=\"0.3\"");
+    let text = case.text("robot.urdf").replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.3\" upper=\"0.3\"");
     case.sandbox.write("robot.urdf", &text);
-    case.sandbox
-        .succeed(&[&DIAGNOSE[..], &["--markdown", "o.md", "--report", "o.html"]].concat());
+    case.sandbox.succeed(&[&DIAGNOSE[..], &["--markdown", "o.md", "--report", "o.html"]].concat());
     let warnings = case.sandbox.json("o.json")["warnings"].clone();
     let said = "exceed the URDF's limits";
     says(&warnings[0]["text"].to_string(), &[said]);
@@ -230,8 +179,7 @@ fn what_is_not_certain_is_a_warning_in_every_report() {
 #[test]
 fn recordings_are_diagnosed_as_they_were_read_if_the_user_says_so() {
     let case = case();
-    case.sandbox
-        .write("a.csv", &with_numbers(|row| row[4 + SHOULDER] *= -1.0));
+    case.sandbox.write("a.csv", &with_numbers(|row| row[4 + SHOULDER] *= -1.0));
     says(&case.sandbox.succeed(&DIAGNOSE), &["--as-read"]);
     let first = case.sandbox.json("o.json");
     assert_eq!(first["verdict"], "units_first");

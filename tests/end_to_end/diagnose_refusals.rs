@@ -16,9 +16,7 @@ pub fn case() -> Case {
     Case { sandbox }
 }
 
-const OUTPUTS: [&str; 8] = [
-    "--json", "o.json", "--report", "o.html", "--model", "o.toml", "--urdf", "o.urdf",
-];
+const OUTPUTS: [&str; 8] = ["--json", "o.json", "--report", "o.html", "--model", "o.toml", "--urdf", "o.urdf"];
 
 /// The refusal with further arguments; nothing must be written.
 pub fn refused(case: &Case, further: &[&str]) -> String {
@@ -59,19 +57,15 @@ pub fn changed(change: impl Fn(&mut Vec<String>)) -> String {
 fn with_line(number: usize, change: impl Fn(&str) -> String) -> String {
     let text = case().text("a.csv");
     let lines = text.lines().enumerate();
-    let list: Vec<String> = lines
-        .map(|(k, line)| if k + 1 == number { change(line) } else { line.to_owned() })
-        .collect();
+    let list: Vec<String> =
+        lines.map(|(k, line)| if k + 1 == number { change(line) } else { line.to_owned() }).collect();
     list.join("\n") + "\n"
 }
 
 #[test]
 fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
     let renamed = with_line(1, |header| header.replace("_shoulder", "_sholder"));
-    says(
-        &refused_with(&renamed),
-        &["a.csv", "no column q_shoulder", "q_sholder", "similar", "--map"],
-    );
+    says(&refused_with(&renamed), &["a.csv", "no column q_shoulder", "q_sholder", "similar", "--map"]);
     let two = with_line(1, |_| String::new());
     let mut lacking = "t,q_turn,q_shoulder,tau_turn,tau_shoulder".to_owned();
     for line in two.lines().skip(1) {
@@ -80,11 +74,7 @@ fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
     }
     says(
         &refused_with(&lacking),
-        &[
-            "a.csv",
-            "no positions and torques (q_elbow, tau_elbow) of \"elbow\" of trio",
-            "record all joints",
-        ],
+        &["a.csv", "no positions and torques (q_elbow, tau_elbow) of \"elbow\" of trio", "record all joints"],
     );
     let misspelt = with_line(1, |header| header.replace("_elbow", "_elbwo"));
     says(
@@ -100,16 +90,7 @@ fn joints_that_do_not_fit_the_robot_are_named_with_their_columns() {
         more += &format!("{line}{}\n", if is_header { ",q_hand,tau_hand" } else { ",0.1,0.2" });
         is_header = false;
     }
-    says(
-        &refused_with(&more),
-        &[
-            "a.csv",
-            "column q_hand",
-            "\"hand\" is not a joint of trio",
-            "\"elbow\"",
-            "--map",
-        ],
-    );
+    says(&refused_with(&more), &["a.csv", "column q_hand", "\"hand\" is not a joint of trio", "\"elbow\"", "--map"]);
 }
 
 #[test]
@@ -119,25 +100,14 @@ fn another_robots_urdf_is_refused_with_what_does_not_fit() {
     command[2] = "puma560";
     says(
         &refused_command(&case, &command),
-        &[
-            "a.csv: belongs to another robot",
-            "\"shoulder\"",
-            "puma560",
-            "\"joint6\"",
-            "give the URDF",
-        ],
+        &["a.csv: belongs to another robot", "\"shoulder\"", "puma560", "\"joint6\"", "give the URDF"],
     );
     // The same names, but a range that the motion leaves, and far too little torque: a note, and no refusal.
-    let urdf = case
-        .text("robot.urdf")
-        .replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.1\" upper=\"0.1\"");
+    let urdf = case.text("robot.urdf").replace("lower=\"-3\" upper=\"3\"", "lower=\"-0.1\" upper=\"0.1\"");
     case.sandbox.write("robot.urdf", &urdf);
     let output = case.sandbox.run(&arguments(&["--verbose"]));
     let stderr = String::from_utf8_lossy(&output.stderr);
-    says(
-        &stderr,
-        &["warning: a.csv: elbow: positions", "exceed the URDF's limits"],
-    );
+    says(&stderr, &["warning: a.csv: elbow: positions", "exceed the URDF's limits"]);
     command[2] = "gone.urdf";
     says(&refused_command(&case, &command), &["gone.urdf", "cannot be read"]);
 }
@@ -150,10 +120,7 @@ fn what_is_no_number_is_refused_with_line_and_column() {
             cells[5] = flaw;
             cells.join(",")
         });
-        says(
-            &refused_with(&text),
-            &["a.csv:12", "\"tau_shoulder\"", &format!("\"{flaw}\""), "delete the row"],
-        );
+        says(&refused_with(&text), &["a.csv:12", "\"tau_shoulder\"", &format!("\"{flaw}\""), "delete the row"]);
     }
     let long = with_line(9, |line| line.to_owned() + ",1");
     says(&refused_with(&long), &["a.csv:9"]);
@@ -168,28 +135,17 @@ fn time_that_runs_back_and_too_few_rows_are_refused() {
     let row = format!("{header}0,1,2,3,4,5,6\n");
     says(&refused_with(&row), &["a.csv:1", "there is one row", "at least two"]);
     says(&refused_with(""), &["a.csv:1", "the file is empty"]);
-    let few: Vec<String> = with_line(1, str::to_owned)
-        .lines()
-        .take(50)
-        .map(str::to_owned)
-        .collect();
+    let few: Vec<String> = with_line(1, str::to_owned).lines().take(50).map(str::to_owned).collect();
     says(
         &refused_with(&few.join("\n")),
-        &[
-            "a.csv",
-            "too short",
-            "needs 0.31 s in one piece; record at least 4 s of motion without gaps",
-        ],
+        &["a.csv", "too short", "needs 0.31 s in one piece; record at least 4 s of motion without gaps"],
     );
 }
 
 #[test]
 fn no_torque_and_no_motion_are_refused_or_reported() {
     let no_torque = changed(|cells| cells[4..].iter_mut().for_each(|cell| *cell = "0".into()));
-    says(
-        &refused_with(&no_torque),
-        &["a.csv", "all torques are zero", "tau_<joint>", "--map"],
-    );
+    says(&refused_with(&no_torque), &["a.csv", "all torques are zero", "tau_<joint>", "--map"]);
     let no_motion = changed(|cells| cells[1..4].iter_mut().for_each(|cell| *cell = "0.5".into()));
     let case = case();
     case.sandbox.write("a.csv", &no_motion);
@@ -200,40 +156,22 @@ fn no_torque_and_no_motion_are_refused_or_reported() {
     case.sandbox.write("a.csv", &changed(|cells| cells[6] = "0".into()));
     let output = case.sandbox.run(&arguments(&[]));
     let stderr = String::from_utf8_lossy(&output.stderr);
-    says(
-        &stderr,
-        &["warning: a.csv: elbow: the torque is 0 throughout", "column"],
-    );
+    says(&stderr, &["warning: a.csv: elbow: the torque is 0 throughout", "column"]);
 }
 
 #[test]
 fn what_is_fitted_cannot_be_the_proof() {
     let case = case();
     let command = |train: &'static str, held_out: &'static str| {
-        [
-            "diagnose",
-            "--robot",
-            "robot.urdf",
-            "--train",
-            "a.csv",
-            train,
-            "--held-out",
-            held_out,
-        ]
+        ["diagnose", "--robot", "robot.urdf", "--train", "a.csv", train, "--held-out", held_out]
     };
     says(
         &refused_command(&case, &command("b.csv", "./b.csv")),
         &["./b.csv: is given as a training and as a held-out recording"],
     );
-    says(
-        &refused_command(&case, &command("a.csv", "c.csv")),
-        &["a.csv: is given twice"],
-    );
+    says(&refused_command(&case, &command("a.csv", "c.csv")), &["a.csv: is given twice"]);
     std::fs::copy(case.path("b.csv"), case.path("copy.csv")).expect("it can be copied");
-    says(
-        &refused_command(&case, &command("b.csv", "copy.csv")),
-        &["copy.csv: contains the same samples as b.csv"],
-    );
+    says(&refused_command(&case, &command("b.csv", "copy.csv")), &["copy.csv: contains the same samples as b.csv"]);
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink("b.csv", case.path("link.csv")).expect("it can be linked");
@@ -271,20 +209,11 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
     );
     says(&refused(&["--json", "."]), &["is a folder"]);
     let recorded = case.text("a.csv");
-    says(
-        &refused(&["--json", "./a.csv"]),
-        &["./a.csv is an input of this command (a.csv); write to another file"],
-    );
+    says(&refused(&["--json", "./a.csv"]), &["./a.csv is an input of this command (a.csv); write to another file"]);
     says(&refused(&["--urdf", "robot.urdf"]), &["robot.urdf", "another file"]);
     assert_eq!(case.text("a.csv"), recorded);
-    says(
-        &refused(&["--json", "o.json", "--report", "o.json"]),
-        &["o.json", "given for two outputs"],
-    );
-    says(
-        &refused(&["--json", "new.json", "--report", "./new.json"]),
-        &["new.json", "given for two outputs"],
-    );
+    says(&refused(&["--json", "o.json", "--report", "o.json"]), &["o.json", "given for two outputs"]);
+    says(&refused(&["--json", "new.json", "--report", "./new.json"]), &["new.json", "given for two outputs"]);
     case.sandbox.write("known.toml", "schema = \"testbed.model/1\"\n");
     says(
         &refused(&["--known", "known.toml", "--json", "known.toml"]),
@@ -297,41 +226,25 @@ fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
 fn known_effects_that_do_not_fit_are_refused_with_their_line() {
     let case = case();
     let refusal = |effect: &str| {
-        case.sandbox.write(
-            "known.toml",
-            &format!("schema = \"testbed.model/1\"\n\n[[effects]]\n{effect}"),
-        );
+        case.sandbox.write("known.toml", &format!("schema = \"testbed.model/1\"\n\n[[effects]]\n{effect}"));
         refused(&case, &["--known", "known.toml"])
     };
     says(
         &refusal("effect = \"viscus_friction\"\njoint = \"elbow\"\ncoefficient = 1.0\n"),
-        &[
-            "known.toml:4",
-            "\"viscus_friction\"",
-            "did you mean \"viscous_friction\"?",
-        ],
+        &["known.toml:4", "\"viscus_friction\"", "did you mean \"viscous_friction\"?"],
     );
     says(
         &refusal("effect = \"viscous_friction\"\njoint = \"elbo\"\ncoefficient = 1.0\n"),
         &["known.toml:5", "no joint \"elbo\"", "did you mean \"elbow\"?"],
     );
-    says(
-        &refusal("effect = \"viscous_friction\"\njoint = \"elbow\"\n"),
-        &["known.toml", "coefficient"],
-    );
-    says(
-        &refused(&case, &["--known", "gone.toml"]),
-        &["gone.toml", "cannot be read"],
-    );
+    says(&refusal("effect = \"viscous_friction\"\njoint = \"elbow\"\n"), &["known.toml", "coefficient"]);
+    says(&refused(&case, &["--known", "gone.toml"]), &["gone.toml", "cannot be read"]);
 }
 
 #[test]
 fn a_column_map_reads_anybodys_file_and_is_refused_by_its_line() {
     let case = case();
-    let [mut map, mut header] = [
-        "[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n".to_owned(),
-        "stamp".to_owned(),
-    ];
+    let [mut map, mut header] = ["[time]\ncolumn = \"stamp\"\nunit = \"ms\"\n".to_owned(), "stamp".to_owned()];
     for (joint, q) in ["turn", "shoulder", "elbow"].into_iter().zip(["p1", "p2", "p3"]) {
         map += &format!("[joints.{joint}]\nq = \"{q}\"\nq_unit = \"deg\"\ntau = \"m{q}\"\n");
     }
@@ -354,10 +267,7 @@ fn a_column_map_reads_anybodys_file_and_is_refused_by_its_line() {
     }
     says(&refused(&case, &[]), &["a.csv:1", "column \"t\"", "--map"]);
     let mapped = case.json(&["--map", "map.toml"]);
-    assert_eq!(
-        crate::diagnose_made::names(&mapped),
-        crate::diagnose_made::names(&plain)
-    );
+    assert_eq!(crate::diagnose_made::names(&mapped), crate::diagnose_made::names(&plain));
     case.sandbox.write("bad.toml", &map.replace("\"p2\"", "\"p22\""));
     says(
         &refused(&case, &["--map", "bad.toml"]),
@@ -372,8 +282,5 @@ fn a_part_of_a_training_recording_is_no_proof() {
     let lines: Vec<&str> = text.lines().collect();
     let part = [&lines[..1], &lines[500..1700]].concat().join("\n");
     case.sandbox.write("c.csv", &(part + "\n"));
-    says(
-        &refused(&case, &[]),
-        &["c.csv: contains a part of a.csv", "must be independent"],
-    );
+    says(&refused(&case, &[]), &["c.csv: contains a part of a.csv", "must be independent"]);
 }

@@ -42,20 +42,14 @@ fn residuals_are_those_of_the_errors() {
     assert_eq!(columns.len(), 3 + 5 * 3);
     let rows = columns["t"].len();
     let number = |name: &str, row: usize| -> f64 { columns[name][row].parse().expect("a number") };
-    for (file, role, [start, end]) in [
-        ("a.csv", "false", [0.0, 16.0]),
-        ("b.csv", "false", [40.0, 56.0]),
-        ("c.csv", "true", [80.0, 90.0]),
-    ] {
+    for (file, role, [start, end]) in
+        [("a.csv", "false", [0.0, 16.0]), ("b.csv", "false", [40.0, 56.0]), ("c.csv", "true", [80.0, 90.0])]
+    {
         let of_file: Vec<usize> = (0..rows).filter(|&row| columns["recording"][row] == file).collect();
         assert!(of_file.len() > 200, "{file} has {} rows", of_file.len());
         assert!(of_file.iter().all(|&row| columns["held_out"][row] == role), "{file}");
         // Times are those in the file.
-        assert!(
-            of_file
-                .windows(2)
-                .all(|pair| number("t", pair[0]) < number("t", pair[1]))
-        );
+        assert!(of_file.windows(2).all(|pair| number("t", pair[0]) < number("t", pair[1])));
         for &row in &of_file {
             assert!((start..end).contains(&number("t", row)), "{file}: {}", number("t", row));
         }
@@ -67,24 +61,12 @@ fn residuals_are_those_of_the_errors() {
             .collect();
         let count = moving.len() as f64;
         let mean = moving.iter().map(|&row| of("measured", row)).sum::<f64>() / count;
-        let spread = moving
-            .iter()
-            .map(|&row| (of("measured", row) - mean).powi(2))
-            .sum::<f64>();
-        for (signal, key) in [
-            ("nominal", "held_out_nrmse_nominal"),
-            ("corrected", "held_out_nrmse_exported"),
-        ] {
-            let error = moving
-                .iter()
-                .map(|&row| (of("measured", row) - of(signal, row)).powi(2))
-                .sum::<f64>();
+        let spread = moving.iter().map(|&row| (of("measured", row) - mean).powi(2)).sum::<f64>();
+        for (signal, key) in [("nominal", "held_out_nrmse_nominal"), ("corrected", "held_out_nrmse_exported")] {
+            let error = moving.iter().map(|&row| (of("measured", row) - of(signal, row)).powi(2)).sum::<f64>();
             let (error, expected) = ((error / spread).sqrt(), found["fit"][joint][key].as_f64());
             let expected = expected.expect("a number");
-            assert!(
-                (error - expected).abs() < 1e-9 * expected,
-                "{joint} {key}: {error} instead of {expected}"
-            );
+            assert!((error - expected).abs() < 1e-9 * expected, "{joint} {key}: {error} instead of {expected}");
         }
         for row in 0..rows {
             let left = of("measured", row) - of("corrected", row);
@@ -119,10 +101,7 @@ fn outputs_with_the_ending_of_another_format_are_refused() {
         refused(&arguments(&[option, name]), &[option, name, found, possible]);
     }
     for (command, possible) in [
-        (
-            &["excite", "--robot", "robot.urdf", "--scenario", "o.yaml"][..],
-            ".toml",
-        ),
+        (&["excite", "--robot", "robot.urdf", "--scenario", "o.yaml"][..], ".toml"),
         (&["excite", "--robot", "robot.urdf", "--csv", "o.txt"], ".csv"),
         (&["inspect", "a.csv", "--json", "o.txt"], ".json"),
         (&["tables", "--json", "o.txt"], ".json"),

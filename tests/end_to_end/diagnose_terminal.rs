@@ -23,18 +23,12 @@ fn a_pipe_gets_what_it_asks_for() {
     assert_eq!(found["verdict"], "explained");
     assert!(!case.path("-").exists());
     let (status, printed, said) = run(&["--quiet", "--json", "d.json"]);
-    assert_eq!(
-        (status, printed.as_str(), said.as_str()),
-        (Some(0), "written: d.json\n", "")
-    );
+    assert_eq!((status, printed.as_str(), said.as_str()), (Some(0), "written: d.json\n", ""));
     let (_, short, _) = run(&[]);
     let (_, complete, _) = run(&["--verbose"]);
     assert!(short.lines().count() < complete.lines().count(), "{short}{complete}");
     assert!(complete.contains("not testable with these recordings") && !short.contains("not testable"));
-    assert!(
-        short.lines().filter(|line| line.starts_with("- ")).count() <= 4,
-        "{short}"
-    );
+    assert!(short.lines().filter(|line| line.starts_with("- ")).count() <= 4, "{short}");
 }
 
 #[test]

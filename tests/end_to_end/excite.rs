@@ -16,10 +16,7 @@ fn columns(text: &str) -> BTreeMap<String, Vec<f64>> {
     let mut columns: BTreeMap<String, Vec<f64>> = header.iter().map(|name| (name.clone(), Vec::new())).collect();
     for row in reader.records() {
         for (name, cell) in header.iter().zip(row.expect("a row").iter()) {
-            columns
-                .get_mut(name)
-                .expect("a column")
-                .push(cell.parse().expect("a number"));
+            columns.get_mut(name).expect("a column").push(cell.parse().expect("a number"));
         }
     }
     columns
@@ -63,11 +60,7 @@ fn a_motion_is_within_all_limits_and_rests_at_its_ends() {
     let [q, qd, qdd] = ["q", "qd", "qdd"].map(signal);
     let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     for (j, [low, high]) in [[-2.7, 2.7], [-2.7, 2.7], [-0.3, 1.5]].into_iter().enumerate() {
-        assert!(
-            q[j].iter().all(|q| (low - 1e-9..=high + 1e-9).contains(q)),
-            "{} leaves its range",
-            JOINTS[j]
-        );
+        assert!(q[j].iter().all(|q| (low - 1e-9..=high + 1e-9).contains(q)), "{} leaves its range", JOINTS[j]);
         for k in 1..4800 {
             let speed = 200.0 * (q[j][k + 1] - q[j][k - 1]);
             assert!((speed - qd[j][k]).abs() < 1e-3, "qd of {} at {k}", JOINTS[j]);
@@ -75,11 +68,7 @@ fn a_motion_is_within_all_limits_and_rests_at_its_ends() {
             assert!((quick - qdd[j][k]).abs() < 2e-2, "qdd of {} at {k}", JOINTS[j]);
         }
         for end in [0, 4800] {
-            assert!(
-                qd[j][end].abs() < 1e-9 && qdd[j][end].abs() < 1e-9,
-                "{} moves at {end}",
-                JOINTS[j]
-            );
+            assert!(qd[j][end].abs() < 1e-9 && qdd[j][end].abs() < 1e-9, "{} moves at {end}", JOINTS[j]);
         }
     }
     for (j, most) in [0.96, 1.6, 1.6].into_iter().enumerate() {
@@ -113,35 +102,17 @@ fn the_motion_determines_more_than_a_naive_one_and_is_the_same_every_time() {
     assert!(naive[0] > 1.05, "a naive motion is as good: {printed}");
     assert!(recorded[0] > 1.05 && recorded[2].is_finite(), "{printed}");
     let read = |name: &str| std::fs::read_to_string(sandbox.path(name)).expect("it is there");
-    let before = files.map(|name| {
-        if name.starts_with('-') {
-            String::new()
-        } else {
-            read(name)
-        }
-    });
+    let before = files.map(|name| if name.starts_with('-') { String::new() } else { read(name) });
     let again = run(&sandbox, &files);
-    assert!(
-        again.contains("written: m.toml (in place of an earlier one)"),
-        "{again}"
-    );
+    assert!(again.contains("written: m.toml (in place of an earlier one)"), "{again}");
     assert!(!again.contains("Warning"), "{again}");
-    assert!(
-        files.map(|name| if name.starts_with('-') {
-            String::new()
-        } else {
-            read(name)
-        }) == before
-    );
+    assert!(files.map(|name| if name.starts_with('-') { String::new() } else { read(name) }) == before);
     // A file of another origin is not replaced.
     for (option, name) in [("--csv", "a.csv"), ("--scenario", "mine.toml")] {
         sandbox.write("mine.toml", "title = \"mine\"\n");
         let kept = read(name);
         let refused = sandbox.refuse(&[&FAST[..], &[option, name]].concat());
-        says(
-            &refused,
-            &[&format!("{option} {name}: exists and"), "give another file"],
-        );
+        says(&refused, &[&format!("{option} {name}: exists and"), "give another file"]);
         assert_eq!(read(name), kept);
     }
     let other = run(&sandbox, &["--seed", "1", "--csv", "other.csv"]);
@@ -150,16 +121,8 @@ fn the_motion_determines_more_than_a_naive_one_and_is_the_same_every_time() {
     let tracked = sandbox.succeed(&["--scenario", "m.toml", "--rerun", "off", "--out", "run"]);
     assert!(tracked.contains("rigid-body"), "{tracked}");
     let summary = sandbox.json("run/summary.json");
-    let errors = summary["tracking"][0]["rms_error_rad"]
-        .as_array()
-        .expect("a list")
-        .clone();
-    assert!(
-        errors
-            .iter()
-            .all(|error| error.as_f64().is_some_and(|error| error < 1e-4)),
-        "{errors:?}"
-    );
+    let errors = summary["tracking"][0]["rms_error_rad"].as_array().expect("a list").clone();
+    assert!(errors.iter().all(|error| error.as_f64().is_some_and(|error| error < 1e-4)), "{errors:?}");
 }
 
 #[test]
@@ -171,37 +134,14 @@ fn what_is_missing_is_refused_with_the_flag_that_mends_it() {
         message
     };
     let slow = URDF.replace("velocity=\"5\"", "velocity=\"0\"");
-    says(
-        &refuse(&slow, &[]),
-        &[
-            "robot.urdf",
-            "\"turn\" has no velocity limit",
-            "--velocity-limit turn=VALUE (rad/s)",
-        ],
-    );
+    says(&refuse(&slow, &[]), &["robot.urdf", "\"turn\" has no velocity limit", "--velocity-limit turn=VALUE (rad/s)"]);
     let weak = URDF.replace("effort=\"200\"", "effort=\"1\"");
-    says(
-        &refuse(&weak, &[]),
-        &[
-            "robot.urdf",
-            "shoulder",
-            "of the 0.800 N m or N",
-            "--effort-limit shoulder=VALUE",
-        ],
-    );
-    says(
-        &refuse(URDF, &["--velocity-limit", "elbo=1"]),
-        &["elbo", "did you mean elbow?"],
-    );
+    says(&refuse(&weak, &[]), &["robot.urdf", "shoulder", "of the 0.800 N m or N", "--effort-limit shoulder=VALUE"]);
+    says(&refuse(URDF, &["--velocity-limit", "elbo=1"]), &["elbo", "did you mean elbow?"]);
     says(&refuse(URDF, &["--position-limit", "1:0"]), &["LOW:HIGH"]);
     // A continuous joint may turn by half a turn.
     let endless = URDF.replacen("type=\"revolute\"", "type=\"continuous\"", 1);
-    assert!(
-        Arm::from_urdf_text(&endless, "r.urdf").expect("an arm").joints()[0]
-            .limits
-            .lower
-            .is_infinite()
-    );
+    assert!(Arm::from_urdf_text(&endless, "r.urdf").expect("an arm").joints()[0].limits.lower.is_infinite());
     let printed = run(&sandbox(&endless), &[]);
     assert!(printed.contains("proposed"), "{printed}");
 }
@@ -213,9 +153,6 @@ fn a_motion_that_hardly_moves_is_warned_of() {
     let words = printed.split_whitespace().collect::<Vec<_>>().join(" ");
     says(
         &words,
-        &[
-            "Warning: within these limits, turn, shoulder and elbow move by less than 0.05 rad",
-            "No file was asked for",
-        ],
+        &["Warning: within these limits, turn, shoulder and elbow move by less than 0.05 rad", "No file was asked for"],
     );
 }

@@ -17,22 +17,9 @@ pub const OUTPUTS: [&str; 7] = ["d.json", "p.html", "m.toml", "u.urdf", "m.xml",
 pub fn diagnose(folder: &str) -> Vec<String> {
     let case = |name: &str| root().join("tests/cases").join(name).display().to_string();
     let mut list = vec!["diagnose".to_owned(), "--robot".into(), case("arm.urdf")];
-    list.extend([
-        "--train".into(),
-        case("friction/train_1.csv"),
-        "--held-out".into(),
-        case("friction/held_out.csv"),
-    ]);
+    list.extend(["--train".into(), case("friction/train_1.csv"), "--held-out".into(), case("friction/held_out.csv")]);
     list.push("--torques-only".into());
-    let options = [
-        "--json",
-        "--report",
-        "--model",
-        "--urdf",
-        "--mjcf",
-        "--markdown",
-        "--residuals",
-    ];
+    let options = ["--json", "--report", "--model", "--urdf", "--mjcf", "--markdown", "--residuals"];
     for (option, name) in options.iter().zip(OUTPUTS) {
         list.extend([(*option).to_owned(), format!("{folder}{name}")]);
     }
@@ -41,9 +28,7 @@ pub fn diagnose(folder: &str) -> Vec<String> {
 
 /// A run of the scenario file `scenario` into the folder `out`.
 pub fn run_of(scenario: &str, out: &str) -> Vec<String> {
-    strings(&words(&format!(
-        "--scenario {scenario} --model true --rerun off --out {out}"
-    )))
+    strings(&words(&format!("--scenario {scenario} --model true --rerun off --out {out}")))
 }
 
 /// Starts the program, whose words nobody hears.
@@ -103,12 +88,7 @@ fn a_killed_run_leaves_whole_files_or_none() {
     let sandbox = Sandbox::new();
     sandbox.write("s.toml", SCENARIO);
     let started = std::time::Instant::now();
-    assert!(
-        start(&sandbox, &run_of("s.toml", "whole"))
-            .wait()
-            .expect("it ends")
-            .success()
-    );
+    assert!(start(&sandbox, &run_of("s.toml", "whole")).wait().expect("it ends").success());
     let longest = started.elapsed();
     let whole = files(&sandbox, "whole");
     for k in 1..=5 {
@@ -202,25 +182,13 @@ fn an_interrupted_program_says_what_was_kept() {
             std::thread::sleep(Duration::from_millis(5));
         }
     });
-    assert!(
-        error.contains("interrupted") && error.contains("nothing was written"),
-        "{error}"
-    );
+    assert!(error.contains("interrupted") && error.contains("nothing was written"), "{error}");
     assert!(sandbox.list("run").is_empty());
     // A recording that never ends: the writer's end opens when the program has opened the reader's.
     let pipe = sandbox.path("pipe.csv");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .expect("it is made")
-            .success()
-    );
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("it is made").success());
     let mut arguments = diagnose("");
-    let train = arguments
-        .iter()
-        .position(|text| text == "--train")
-        .expect("it is there");
+    let train = arguments.iter().position(|text| text == "--train").expect("it is there");
     arguments[train + 1] = "pipe.csv".to_owned();
     let writer = std::cell::OnceCell::new();
     let error = interrupted(&arguments, &|| {

@@ -28,29 +28,17 @@ fn a_full_disk_costs_the_file_and_not_the_answer() {
     let none = on_a_full_disk(&sandbox, &diagnose("none/"), 0);
     let printed = String::from_utf8_lossy(&none.stdout);
     let error = String::from_utf8_lossy(&none.stderr);
-    assert!(
-        !none.status.success() && printed.contains("Coulomb friction"),
-        "{printed}{error}"
-    );
+    assert!(!none.status.success() && printed.contains("Coulomb friction"), "{printed}{error}");
     for name in OUTPUTS {
         assert!(error.contains(&format!("error: none/{name}")), "{name}: {error}");
     }
-    assert!(
-        sandbox.list("none").is_empty() && !printed.contains("written:"),
-        "{printed}"
-    );
+    assert!(sandbox.list("none").is_empty() && !printed.contains("written:"), "{printed}");
     // Small files have room, large ones do not.
     let some = on_a_full_disk(&sandbox, &diagnose("some/"), 16);
     let printed = String::from_utf8_lossy(&some.stdout);
-    assert!(
-        !some.status.success() && printed.contains("Coulomb friction"),
-        "{printed}"
-    );
+    assert!(!some.status.success() && printed.contains("Coulomb friction"), "{printed}");
     let kept = sandbox.list("some");
-    assert!(
-        kept.contains(&"m.toml".to_owned()) && !kept.contains(&"p.html".to_owned()),
-        "{kept:?}"
-    );
+    assert!(kept.contains(&"m.toml".to_owned()) && !kept.contains(&"p.html".to_owned()), "{kept:?}");
     for name in OUTPUTS {
         assert_eq!(
             printed.contains(&format!("written: some/{name}")),
@@ -66,10 +54,7 @@ fn a_full_disk_costs_the_file_and_not_the_answer() {
     assert!(!run.status.success() && printed.contains("RMS error"), "{printed}");
     assert!(sandbox.list("run").is_empty());
     let error = String::from_utf8_lossy(&run.stderr);
-    assert!(
-        error.contains("recording.csv") && error.contains("summary.json"),
-        "{error}"
-    );
+    assert!(error.contains("recording.csv") && error.contains("summary.json"), "{error}");
 }
 
 #[test]
@@ -77,16 +62,10 @@ fn a_printed_answer_that_finds_no_room_is_an_error() {
     let full = std::fs::File::options().write(true).open("/dev/full");
     // Not every system has the device.
     let Ok(full) = full else { return };
-    let output = Command::new(env!("CARGO_BIN_EXE_testbed"))
-        .arg("schema")
-        .stdout(full)
-        .output();
+    let output = Command::new(env!("CARGO_BIN_EXE_testbed")).arg("schema").stdout(full).output();
     let output = output.expect("the program starts");
     let error = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        !output.status.success() && error.contains("printing the result"),
-        "{error}"
-    );
+    assert!(!output.status.success() && error.contains("printing the result"), "{error}");
 }
 
 #[test]
@@ -122,24 +101,14 @@ fn what_is_replaced_is_reported() {
     let arguments = diagnose("");
     let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let first = sandbox.succeed(&list);
-    assert!(
-        first.contains("written: d.json\n") && !first.contains("in place of"),
-        "{first}"
-    );
+    assert!(first.contains("written: d.json\n") && !first.contains("in place of"), "{first}");
     let second = sandbox.succeed(&list);
-    assert!(
-        second.contains("written: d.json (in place of an earlier one)\n"),
-        "{second}"
-    );
+    assert!(second.contains("written: d.json (in place of an earlier one)\n"), "{second}");
     sandbox.write("s.toml", SCENARIO);
     let run = run_of("s.toml", "run");
     let run: Vec<&str> = run.iter().map(String::as_str).collect();
     assert!(!sandbox.succeed(&run).contains("in place of"));
-    assert!(
-        sandbox
-            .succeed(&run)
-            .contains("recording.csv (in place of an earlier one)\n")
-    );
+    assert!(sandbox.succeed(&run).contains("recording.csv (in place of an earlier one)\n"));
 }
 
 /// A folder that cannot be written to is an error before the work begins. Root may write everywhere, and is not refused.
@@ -157,10 +126,7 @@ fn a_read_only_folder_is_reported_before_the_work() {
         let arguments = diagnose("closed/");
         let list: Vec<&str> = arguments.iter().map(String::as_str).collect();
         let error = sandbox.refuse(&list);
-        assert!(
-            error.contains("closed/") && error.contains("cannot be written"),
-            "{error}"
-        );
+        assert!(error.contains("closed/") && error.contains("cannot be written"), "{error}");
         assert!(!error.contains("reading"), "{error}");
     }
     permit(0o755);
@@ -198,8 +164,6 @@ fn only_earlier_outputs_are_replaced() {
     }
     std::fs::create_dir(case.sandbox.path("run")).expect("it can be made");
     case.sandbox.write("run/recording.csv", "t,q_a,tau_a\n");
-    let message = case
-        .sandbox
-        .refuse(&["--scenario", "taskD", "--model", "rigid-body", "--out", "run"]);
+    let message = case.sandbox.refuse(&["--scenario", "taskD", "--model", "rigid-body", "--out", "run"]);
     says(&message, &["recording.csv", "not of an earlier run", "--out"]);
 }

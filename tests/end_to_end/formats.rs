@@ -32,9 +32,8 @@ fn diagnose_takes_numbered_joints_spaces_and_split_stamps() {
         assert!(output.status.success(), "{stderr}");
         let json = case.sandbox.json("o.json");
         let findings = json["findings"].as_array().expect("there are findings").iter();
-        let mut list: Vec<String> = findings
-            .map(|finding| format!("{} {}", finding["effect"], finding["joint"]))
-            .collect();
+        let mut list: Vec<String> =
+            findings.map(|finding| format!("{} {}", finding["effect"], finding["joint"])).collect();
         list.push(stderr);
         list
     };
@@ -48,10 +47,7 @@ fn diagnose_takes_numbered_joints_spaces_and_split_stamps() {
     let number = |name: &str| {
         let joint = joints.iter().position(|joint| name.ends_with(joint));
         joint.map_or(name.to_owned(), |joint| {
-            format!(
-                "{}[{joint}]",
-                name.trim_end_matches(joints[joint]).trim_end_matches('_')
-            )
+            format!("{}[{joint}]", name.trim_end_matches(joints[joint]).trim_end_matches('_'))
         })
     };
     let numbered: Vec<String> = header.split(',').map(number).collect();
@@ -62,22 +58,12 @@ fn diagnose_takes_numbered_joints_spaces_and_split_stamps() {
     let split = rows.lines().map(|row| {
         let (t, rest) = row.split_once(',').expect("a time");
         let nanos = (t.parse::<f64>().expect("a time") * 1e9).round() as i64;
-        format!(
-            "{},{},{rest}\n",
-            1_700_000_000 + nanos / 1_000_000_000,
-            nanos % 1_000_000_000
-        )
+        format!("{},{},{rest}\n", 1_700_000_000 + nanos / 1_000_000_000, nanos % 1_000_000_000)
     });
     let split: String = split.collect();
-    case.sandbox.write(
-        "c.csv",
-        &format!("{}\n{split}", header.replacen("t,", "sec,nanosec,", 1)),
-    );
+    case.sandbox.write("c.csv", &format!("{}\n{split}", header.replacen("t,", "sec,nanosec,", 1)));
     let mut again = found(&case);
     let stderr = again.pop().expect("the notes");
     assert_eq!(again, expected);
-    says(
-        &stderr,
-        &["note: a.csv: the columns are those of arrays", "URDF's order"],
-    );
+    says(&stderr, &["note: a.csv: the columns are those of arrays", "URDF's order"]);
 }

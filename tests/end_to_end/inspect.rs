@@ -133,19 +133,13 @@ fn unreadable_recordings_are_refused_with_their_place_and_the_others_shown() {
     let back = good().replacen("\n4.000000,", "\n3.000000,", 1);
     says(&refusal(&back), &["bad.csv:1002: time runs back, from 3.996 s to 3 s"]);
     says(&refusal("t,q_a,tau_a\n0,1,2\n"), &["one row"]);
-    says(
-        &refusal("t,q_a,q_b,tau_a\n"),
-        &["bad.csv:1: there is no column \"tau_b\""],
-    );
+    says(&refusal("t,q_a,q_b,tau_a\n"), &["bad.csv:1: there is no column \"tau_b\""]);
     says(&sandbox.refuse(&["inspect", "gone.csv"]), &["gone.csv: cannot be read"]);
     says(
         &sandbox.refuse(&["inspect", "good.csv", "--json", "./good.csv"]),
         &["./good.csv is an input of this command (good.csv); write to another file"],
     );
-    says(
-        &sandbox.refuse(&["inspect", "good.csv", "--json", "no/o.json"]),
-        &["no/o.json", "cannot be written"],
-    );
+    says(&sandbox.refuse(&["inspect", "good.csv", "--json", "no/o.json"]), &["no/o.json", "cannot be written"]);
 }
 
 #[test]
@@ -162,25 +156,13 @@ fn a_column_map_reads_anybodys_file() {
                tau = \"cur\"\ntau_unit = \"A\"\ntau_scale = 12.5\n";
     sandbox.write("map.toml", map);
     let text = sandbox.succeed(&["inspect", "theirs.csv", "--map", "map.toml"]);
-    says(
-        &text,
-        &[
-            "19.99 s at 100 Hz",
-            "elbow",
-            "-1 … 1",
-            "-25 … 25",
-            "column \"state\" is \"RUN\"",
-        ],
-    );
+    says(&text, &["19.99 s at 100 Hz", "elbow", "-1 … 1", "-25 … 25", "column \"state\" is \"RUN\""]);
     sandbox.write("bad.toml", &map.replace("q_unit", "q_untis"));
     let message = sandbox.refuse(&["inspect", "theirs.csv", "--map", "bad.toml"]);
     says(&message, &["bad.toml:6: unknown key `q_untis`; did you mean `q_unit`?"]);
     sandbox.write("bad.toml", &map.replace("\"pos\"", "\"poss\""));
     let message = sandbox.refuse(&["inspect", "theirs.csv", "--map", "bad.toml"]);
-    says(
-        &message,
-        &["bad.toml:5: theirs.csv has no column \"poss\"; did you mean \"pos\"?"],
-    );
+    says(&message, &["bad.toml:5: theirs.csv has no column \"poss\"; did you mean \"pos\"?"]);
 }
 
 /// A recording of the PUMA 560 in the simulation, as CSV.
@@ -210,9 +192,7 @@ fn what_does_not_fit_the_robot_is_reported() {
             "joint2: is in the URDF, but the recording has no such joint; is \"jont2\" meant?",
         ],
     );
-    let swapped = header
-        .replace("tau_joint2", "tau_x")
-        .replace("tau_joint3", "tau_joint2");
+    let swapped = header.replace("tau_joint2", "tau_x").replace("tau_joint3", "tau_joint2");
     let swapped = format!("{}\n{rows}", swapped.replace("tau_x", "tau_joint3"));
     says(&inspect(&swapped), &["the torques of joint2 and joint3 seem swapped"]);
     // A torque as the motor would feel it behind a gear of 100, turned, and in mN m. That of joint 1, whose axis is vertical, is also what
@@ -228,20 +208,11 @@ fn what_does_not_fit_the_robot_is_reported() {
         }
         changed
     };
-    says(
-        &inspect(&with("tau_joint2", 0.01)),
-        &["joint2: the torque is", "motor side"],
-    );
-    says(
-        &inspect(&with("tau_joint2", -1.0)),
-        &["joint2: the torque", "the sign opposite"],
-    );
+    says(&inspect(&with("tau_joint2", 0.01)), &["joint2: the torque is", "motor side"]);
+    says(&inspect(&with("tau_joint2", -1.0)), &["joint2: the torque", "the sign opposite"]);
     for joint in ["joint1", "joint2"] {
         let said = inspect(&with(&format!("tau_{joint}"), 1000.0));
-        says(
-            &said,
-            &[&format!("{joint}: the torque is"), "another unit", "about 1.0e-3"],
-        );
+        says(&said, &[&format!("{joint}: the torque is"), "another unit", "about 1.0e-3"]);
     }
 }
 
@@ -253,10 +224,8 @@ fn the_inertia_of_a_drive_is_not_another_unit() {
     let (header, rows) = text.split_once('\n').expect("it has rows");
     let at = |wanted: &str| header.split(',').position(|name| name == wanted).expect("it is there");
     let [time, speed, torque] = ["t", "qd_joint6", "tau_joint6"].map(at);
-    let cells: Vec<Vec<f64>> = rows
-        .lines()
-        .map(|row| row.split(',').map(|cell| cell.parse().expect("a number")).collect())
-        .collect();
+    let cells: Vec<Vec<f64>> =
+        rows.lines().map(|row| row.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
     let mut changed = format!("{header}\n");
     for k in 1..cells.len() - 1 {
         let (before, after) = (&cells[k - 1], &cells[k + 1]);
@@ -285,14 +254,7 @@ fn real_recordings_are_inspected() {
         "--robot",
         &path("robot.urdf"),
     ]);
-    says(
-        &text,
-        &[
-            "no rows from 2.3000 s to 2.3430 s",
-            "line 3003: time starts again",
-            "iiwa_joint_7",
-        ],
-    );
+    says(&text, &["no rows from 2.3000 s to 2.3430 s", "line 3003: time starts again", "iiwa_joint_7"]);
     assert!(!text.contains("swapped") && !text.contains("opposite"), "{text}");
 }
 
@@ -310,10 +272,7 @@ fn the_table_has_units() {
     };
     let header = |kinds: [&str; 2]| {
         let [first, second] = [joint("joint1", kinds[0], "b"), joint("joint2", kinds[1], "of_joint1")];
-        sandbox.write(
-            "r.urdf",
-            &format!("<robot name=\"r\"><link name=\"b\"/>{first}{second}</robot>"),
-        );
+        sandbox.write("r.urdf", &format!("<robot name=\"r\"><link name=\"b\"/>{first}{second}</robot>"));
         let text = sandbox.succeed(&["inspect", "good.csv", "--robot", "r.urdf"]);
         text.lines()
             .skip(2)
@@ -323,14 +282,8 @@ fn the_table_has_units() {
     };
     assert_eq!(
         header(["revolute", "revolute"]),
-        [
-            "joint position speed in reversals torque encoder velocity",
-            "(rad) (rad/s) motion (N m) step delay"
-        ]
+        ["joint position speed in reversals torque encoder velocity", "(rad) (rad/s) motion (N m) step delay"]
     );
     assert_eq!(header(["prismatic", "prismatic"])[1], "(m) (m/s) motion (N) step delay");
-    assert_eq!(
-        header(["revolute", "prismatic"])[1],
-        "(rad, m) (rad/s, m/s) motion (N m, N) step delay"
-    );
+    assert_eq!(header(["revolute", "prismatic"])[1], "(rad, m) (rad/s, m/s) motion (N m, N) step delay");
 }

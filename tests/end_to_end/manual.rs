@@ -5,27 +5,15 @@ use std::process::Command;
 
 use crate::support::Sandbox;
 
-const COMMANDS: [&str; 10] = [
-    "tables",
-    "transfer",
-    "diagnose",
-    "inspect",
-    "excite",
-    "prove",
-    "conceal",
-    "schema",
-    "completions",
-    "man",
-];
+const COMMANDS: [&str; 10] =
+    ["tables", "transfer", "diagnose", "inspect", "excite", "prove", "conceal", "schema", "completions", "man"];
 
 /// The long options of a help text, as `--name`.
 fn options(help: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for line in help.lines().filter(|line| line.trim_start().starts_with('-')) {
         let words = line.split([' ', ',', '=', '[']);
-        let option = words
-            .map(str::trim)
-            .find(|word| word.starts_with("--") && word.len() > 2);
+        let option = words.map(str::trim).find(|word| word.starts_with("--") && word.len() > 2);
         found.extend(option.map(str::to_owned));
     }
     found
@@ -39,18 +27,10 @@ fn all(sandbox: &Sandbox) -> Vec<(&'static str, BTreeSet<String>)> {
         .skip_while(|line| *line != "Commands:")
         .skip(1)
         .take_while(|line| !line.is_empty())
-        .filter_map(|line| {
-            line.strip_prefix("  ")?
-                .split(' ')
-                .next()
-                .filter(|word| !word.is_empty())
-        })
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next().filter(|word| !word.is_empty()))
         .collect();
     for command in &listed {
-        assert!(
-            *command == "help" || COMMANDS.contains(command),
-            "{command} is not in COMMANDS"
-        );
+        assert!(*command == "help" || COMMANDS.contains(command), "{command} is not in COMMANDS");
     }
     let mut all = vec![("", options(&help))];
     for command in COMMANDS {
@@ -72,15 +52,9 @@ fn completions_name_every_command_and_option() {
             assert!(script.contains(command), "{command} is not in the script for {shell}");
             for option in options {
                 // fish names an option without its dashes.
-                let name = if shell == "fish" {
-                    format!("-l {}", option.trim_start_matches('-'))
-                } else {
-                    option.clone()
-                };
-                assert!(
-                    script.contains(&name),
-                    "{command} {option} is not in the script for {shell}"
-                );
+                let name =
+                    if shell == "fish" { format!("-l {}", option.trim_start_matches('-')) } else { option.clone() };
+                assert!(script.contains(&name), "{command} {option} is not in the script for {shell}");
             }
         }
     }
@@ -103,10 +77,7 @@ fn the_manual_page_names_every_command_and_option() {
             &rest[..rest.find("\n.SH ").unwrap_or(rest.len())]
         };
         for option in options {
-            assert!(
-                section.contains(&option),
-                "{command} {option} is not in its section:\n{section}"
-            );
+            assert!(section.contains(&option), "{command} {option} is not in its section:\n{section}");
         }
     }
 }
@@ -129,10 +100,7 @@ fn printed(arguments: &[&str], variables: &[(&str, &str)]) -> Vec<u8> {
     );
     let mut command = Command::new(env!("CARGO_BIN_EXE_testbed"));
     command.args(arguments).current_dir(sandbox.path("")).env_clear();
-    let output = command
-        .envs(variables.iter().copied())
-        .output()
-        .expect("the program starts");
+    let output = command.envs(variables.iter().copied()).output().expect("the program starts");
     [output.stdout, output.stderr].concat()
 }
 
@@ -144,11 +112,7 @@ fn without_a_terminal_nothing_is_escaped() {
         for variables in [&[][..], &[("TERM", "xterm-256color")], &[("NO_COLOR", "1")]] {
             let text = printed(arguments, variables);
             assert!(!text.is_empty(), "{arguments:?}");
-            assert!(
-                !text.contains(&ESCAPE),
-                "{arguments:?} with {variables:?}: {}",
-                String::from_utf8_lossy(&text)
-            );
+            assert!(!text.contains(&ESCAPE), "{arguments:?} with {variables:?}: {}", String::from_utf8_lossy(&text));
         }
     }
 }
@@ -160,10 +124,6 @@ fn no_color_is_obeyed_where_colours_would_be_used() {
     assert!(help.contains(&ESCAPE), "this test would see no colours");
     for arguments in PRINTING {
         let text = printed(arguments, &[forced, ("NO_COLOR", "1")]);
-        assert!(
-            !text.contains(&ESCAPE),
-            "{arguments:?}: {}",
-            String::from_utf8_lossy(&text)
-        );
+        assert!(!text.contains(&ESCAPE), "{arguments:?}: {}", String::from_utf8_lossy(&text));
     }
 }

@@ -62,18 +62,8 @@ fn an_error_names_its_file_once() {
     let commands: [&[&str]; 12] = [
         &["diagnose", "--robot", "FILE", "--train", "good.csv"],
         &["diagnose", "--robot", "r.urdf", "--train", "FILE"],
-        &[
-            "diagnose",
-            "--robot",
-            "r.urdf",
-            "--train",
-            "good.csv",
-            "--held-out",
-            "FILE",
-        ],
-        &[
-            "diagnose", "--robot", "r.urdf", "--train", "good.csv", "--known", "FILE",
-        ],
+        &["diagnose", "--robot", "r.urdf", "--train", "good.csv", "--held-out", "FILE"],
+        &["diagnose", "--robot", "r.urdf", "--train", "good.csv", "--known", "FILE"],
         &["diagnose", "--robot", "r.urdf", "--train", "good.csv", "--map", "FILE"],
         &["conceal", "--seed", "1", "--out", "cases", "--robot", "FILE"],
         &["conceal", "--robot", "r.urdf", "--out", "cases", "--effects", "FILE"],
@@ -85,14 +75,9 @@ fn an_error_names_its_file_once() {
     ];
     for command in commands {
         for file in WRONG {
-            let command: Vec<&str> = command
-                .iter()
-                .map(|word| if *word == "FILE" { file } else { word })
-                .collect();
+            let command: Vec<&str> = command.iter().map(|word| if *word == "FILE" { file } else { word }).collect();
             let stderr = sandbox.refuse(&command);
-            let error = stderr
-                .lines()
-                .filter(|line| !line.starts_with("note: ") && !line.starts_with("warning: "));
+            let error = stderr.lines().filter(|line| !line.starts_with("note: ") && !line.starts_with("warning: "));
             let error = error.collect::<Vec<_>>().join("\n");
             assert_eq!(named(&error, file), 1, "{command:?}: {error}");
             let is_plain = |c: char| c == '\n' || !c.is_control();

@@ -25,10 +25,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 /// Errors of the joints and their mean, of `model` after training on `train`.
 fn torque_error(train: &[&str], model: &str) -> (Vec<f64>, f64) {
     let tables = report()["tables"].as_array().expect("tables");
-    let table = tables
-        .iter()
-        .find(|table| table["train"] == serde_json::json!(train))
-        .expect("the table");
+    let table = tables.iter().find(|table| table["train"] == serde_json::json!(train)).expect("the table");
     assert_eq!(table["test"], "D");
     let rows = table["rows"].as_array().expect("rows");
     let row = rows.iter().find(|row| row["model"] == model).expect("the row");
@@ -116,10 +113,7 @@ fn tracking_error_of_each_model_is_in_its_band() {
     ];
     for (model, low, high) in bands {
         let error = arm_error(model);
-        assert!(
-            (low..=high).contains(&error),
-            "{model}: {error} rad is not in {low} to {high}"
-        );
+        assert!((low..=high).contains(&error), "{model}: {error} rad is not in {low} to {high}");
     }
     assert!(tracking("rigid_body").iter().any(|error| *error >= 5e-3));
 }
@@ -129,20 +123,8 @@ fn tracking_error_of_each_model_is_in_its_band() {
 fn independent_joint_learning_tracks_best() {
     assert!(arm_error("independent_joint") <= arm_error("rigid_body") / 5.0);
     assert!(arm_error("independent_joint") <= arm_error("hybrid") / 2.0);
-    let order = [
-        "true",
-        "independent_joint_13",
-        "independent_joint",
-        "hybrid",
-        "rigid_body",
-        "gp",
-    ];
+    let order = ["true", "independent_joint_13", "independent_joint", "hybrid", "rigid_body", "gp"];
     for pair in order.windows(2) {
-        assert!(
-            arm_error(pair[0]) < arm_error(pair[1]),
-            "{} does not beat {}",
-            pair[0],
-            pair[1]
-        );
+        assert!(arm_error(pair[0]) < arm_error(pair[1]), "{} does not beat {}", pair[0], pair[1]);
     }
 }

@@ -17,10 +17,9 @@ fn cases() -> Sandbox {
         {"effect": "quadratic_drag", "joint": "shoulder", "coefficient": 4.0, "expressed_share": 0.1},
     ]);
     let nothing = |_: &Motion, _: &mut [f64]| {};
-    for (name, physics, injected) in [
-        ("case_a", &drag as &dyn Fn(&Motion, &mut [f64]), injected),
-        ("case_b", &nothing, json!([])),
-    ] {
+    for (name, physics, injected) in
+        [("case_a", &drag as &dyn Fn(&Motion, &mut [f64]), injected), ("case_b", &nothing, json!([]))]
+    {
         std::fs::create_dir_all(sandbox.path(&format!("given/{name}"))).expect("a folder");
         std::fs::create_dir_all(sandbox.path("given/truth")).expect("a folder");
         sandbox.write(&format!("given/{name}/robot.urdf"), URDF);
@@ -57,12 +56,7 @@ fn cases_are_sealed_diagnosed_opened_and_scored_and_nothing_is_done_twice() {
     let proof = sandbox.json("proof/score.json");
     assert_eq!(proof["schema"], "testbed.proof/1");
     assert_eq!(proof["score"]["cases"], 2);
-    assert_eq!(
-        target(&proof, "macro F1")["figure"],
-        1.0,
-        "{:#}",
-        proof["score"]["concealed"]
-    );
+    assert_eq!(target(&proof, "macro F1")["figure"], 1.0, "{:#}", proof["score"]["concealed"]);
     assert_eq!(target(&proof, "empty")["reached"], true);
     let error = proof["score"]["main_parameters"]["median"].as_f64().expect("a number");
     assert!(error < 0.03, "{error}");
@@ -153,10 +147,7 @@ fn a_truth_that_cannot_be_read_is_reported_before_anything_is_diagnosed() {
     let sandbox = cases();
     sandbox.write("given/truth/case_b.json", "{\"case\": \"case_b\"}");
     let refused = sandbox.refuse(&COMMAND);
-    assert!(
-        refused.contains("case_b.json") && refused.contains("missing field"),
-        "{refused}"
-    );
+    assert!(refused.contains("case_b.json") && refused.contains("missing field"), "{refused}");
     assert_eq!(sandbox.list("proof/diagnoses"), [""; 0]);
 }
 

@@ -68,15 +68,7 @@ fn published() -> Sandbox {
     sandbox
 }
 
-const COMMAND: [&str; 7] = [
-    "prove",
-    "--published",
-    "published.toml",
-    "--recordings",
-    "data",
-    "--out",
-    "proof",
-];
+const COMMAND: [&str; 7] = ["prove", "--published", "published.toml", "--recordings", "data", "--out", "proof"];
 
 fn bytes(sandbox: &Sandbox, name: &str) -> Vec<u8> {
     std::fs::read(sandbox.path(name)).expect("the file is there")
@@ -90,12 +82,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
     assert!(printed.contains("trio"), "{printed}");
     let proof = sandbox.json("proof/score.json");
     let score = &proof["robots"][0]["score"];
-    let fates: Vec<&Value> = score["said"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .map(|said| &said["fate"])
-        .collect();
+    let fates: Vec<&Value> = score["said"].as_array().expect("a list").iter().map(|said| &said["fate"]).collect();
     assert_eq!(fates[0], "named", "{score:#}");
     // Nothing is on the elbow: a statement about it is missed, or declared not to show.
     assert!(fates[1] == "missed" || fates[1] == "not_observable", "{score:#}");
@@ -116,9 +103,7 @@ fn recordings_are_sealed_diagnosed_and_held_against_what_is_published() {
     assert_eq!(proof["absent"], serde_json::json!(["elsewhere"]));
     let [page, markdown] =
         ["proof/report.html", "real.md"].map(|name| String::from_utf8(bytes(&sandbox, name)).expect("text"));
-    let recording = proof["seal"]["cases"][0]["files"]["train_a.csv"]
-        .as_str()
-        .expect("a hash");
+    let recording = proof["seal"]["cases"][0]["files"]["train_a.csv"].as_str().expect("a hash");
     for text in [&page, &markdown] {
         for needed in [
             "elsewhere",
@@ -182,42 +167,22 @@ fn what_cannot_be_is_refused_with_line_and_remedy() {
             "\"kg\"",
             "published.toml:22: \"kg\" is no unit of coulomb_friction\u{2019}s level here; give N m or mN m or kN m",
         ),
-        (
-            "[2500.0, 1500.0]",
-            "[2500.0]",
-            "published.toml:22: there are 1 values; give 2, one per joint",
-        ),
-        (
-            "parameters.level",
-            "parameters.stiffness",
-            "coulomb_friction has no \"stiffness\" to compare; it has level",
-        ),
+        ("[2500.0, 1500.0]", "[2500.0]", "published.toml:22: there are 1 values; give 2, one per joint"),
+        ("parameters.level", "parameters.stiffness", "coulomb_friction has no \"stiffness\" to compare; it has level"),
         ("joints = [\"turn\"]\n", "", "spring is on a joint; add joints"),
         (
             "train = [\"a.csv\", \"b.csv\"]",
             "train = [\"a.csv\", \"d.csv\"]",
             "data/trio/d.csv: does not exist, and robot \"trio\" needs it; get it from https://example.org/trio",
         ),
-        (
-            "train = [\"a.csv\", \"b.csv\"]",
-            "train = [\"a.csv\", \"c.csv\"]",
-            "\"c.csv\" is given twice",
-        ),
+        ("train = [\"a.csv\", \"b.csv\"]", "train = [\"a.csv\", \"c.csv\"]", "\"c.csv\" is given twice"),
         (
             "train = [\"a.csv\", \"b.csv\"]",
             "train = [\"a.csv\", \"b.txt\"]",
             "published.toml:3: recording \"b.txt\" does not end in .csv, and would be neither sealed nor fitted; rename it",
         ),
-        (
-            "testbed.published/1",
-            "testbed.published/2",
-            "published.toml:1: the schema is \"testbed.published/2\"",
-        ),
-        (
-            "licence = \"MIT\"",
-            "license = \"MIT\"",
-            "unknown key `license`; did you mean `licence`?",
-        ),
+        ("testbed.published/1", "testbed.published/2", "published.toml:1: the schema is \"testbed.published/2\""),
+        ("licence = \"MIT\"", "license = \"MIT\"", "unknown key `license`; did you mean `licence`?"),
     ];
     for (from, to, reason) in cases {
         assert!(PUBLISHED.contains(from), "{from}");
@@ -230,10 +195,7 @@ fn what_cannot_be_is_refused_with_line_and_remedy() {
     sandbox.write("published.toml", PUBLISHED);
     std::fs::create_dir_all(sandbox.path("empty")).expect("a folder");
     let refused = sandbox.refuse(&["prove", "--published", "published.toml", "--recordings", "empty"]);
-    assert!(
-        refused.contains("--recordings empty: has none of the folders trio, elsewhere"),
-        "{refused}"
-    );
+    assert!(refused.contains("--recordings empty: has none of the folders trio, elsewhere"), "{refused}");
 }
 
 /// The repository's own file is read, whatever is beside the repository.

@@ -36,10 +36,7 @@ fn examples(page: &str) -> Vec<Example> {
         let joined = block.replace("\\\n", " ");
         let commands = joined.lines().filter(|line| !line.starts_with('#')).map(str::to_owned);
         let answer = blocks.get(k + 1).filter(|(kind, ..)| kind == "text");
-        list.push(Example {
-            commands: commands.collect(),
-            answer: answer.map(|(_, block, _)| block.clone()),
-        });
+        list.push(Example { commands: commands.collect(), answer: answer.map(|(_, block, _)| block.clone()) });
     }
     list
 }
@@ -122,13 +119,7 @@ fn the_documentation_shows_the_answers() {
 /// The cells of the rows of a table of joints.
 fn joints(text: &str) -> Vec<Vec<&str>> {
     let rows = text.lines().filter(|line| line.trim_start().starts_with("joint"));
-    rows.map(|line| {
-        line.split("  ")
-            .map(str::trim)
-            .filter(|cell| !cell.is_empty())
-            .collect()
-    })
-    .collect()
+    rows.map(|line| line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect()).collect()
 }
 
 #[test]
@@ -136,9 +127,7 @@ fn the_documentation_shows_task_d() {
     let main_job = |line: &String| line == "testbed --scenario taskD";
     let all = examples("docs/track.md");
     let example = all.iter().find(|example| example.commands.iter().any(main_job));
-    let shown = example
-        .and_then(|example| example.answer.as_ref())
-        .expect("it has an answer");
+    let shown = example.and_then(|example| example.answer.as_ref()).expect("it has an answer");
     let printed = Sandbox::new().succeed(&["--scenario", "taskD", "--rerun", "off"]);
     assert_eq!(shown.lines().next(), printed.lines().next());
     let (shown, printed) = (joints(shown), joints(&printed));
@@ -149,10 +138,7 @@ fn the_documentation_shows_task_d() {
         // The torque error is rounding noise; the tracking error is not.
         for cell in [1, 2] {
             let value = |cell: &str| cell.split(' ').next().and_then(|text| text.parse::<f64>().ok());
-            let (a, b) = (
-                value(shown[cell]).expect("a number"),
-                value(printed[cell]).expect("a number"),
-            );
+            let (a, b) = (value(shown[cell]).expect("a number"), value(printed[cell]).expect("a number"));
             assert!((a / b - 1.0).abs() < 0.1, "{shown:?} {printed:?}");
         }
     }
@@ -214,20 +200,14 @@ fn what_a_diagnosis_says_can_be() {
             let recording = window["recording"].as_str().expect("a name");
             // One clock, with 5 s between recordings of 25 s.
             let names = ["train_1", "train_2", "held_out"];
-            let number = names
-                .iter()
-                .position(|name| recording.contains(name))
-                .expect("a recording");
+            let number = names.iter().position(|name| recording.contains(name)).expect("a recording");
             let ends = [30.0 * number as f64, 30.0 * number as f64 + 24.992];
             let [from, to] = ["start", "end"].map(|key| window[key].as_f64().expect("a time"));
             assert!(ends[0] <= from && from < to && to <= ends[1], "{window}");
             cut_short += usize::from(to > ends[1] - 0.3);
         }
     }
-    assert!(
-        cut_short > 0,
-        "no stretch is near the end of its recording: this test says nothing"
-    );
+    assert!(cut_short > 0, "no stretch is near the end of its recording: this test says nothing");
     let mut stated = 0;
     for entry in report["not_observable"].as_array().expect("a list") {
         let above = |key: &str| entry["would_be_seen_above"][key].as_f64();

@@ -26,64 +26,31 @@ fn refusal(from: &str, to: &str) -> String {
 #[test]
 fn an_unknown_scenario_is_refused_with_those_there_are() {
     let message = Sandbox::new().refuse(&["--scenario", "taskE"]);
-    says(
-        &message,
-        &["\"taskE\"", "did you mean task", "taskA, taskB, taskC, taskD"],
-    );
+    says(&message, &["\"taskE\"", "did you mean task", "taskA, taskB, taskC, taskD"]);
     let message = Sandbox::new().refuse(&["--scenario", "taskD", "--train", "taskA,taskX"]);
     says(&message, &["\"taskX\"", "taskA, taskB, taskC, taskD"]);
-    says(
-        &Sandbox::new().refuse(&["--scenario", "gone.toml"]),
-        &["gone.toml", "cannot be read"],
-    );
+    says(&Sandbox::new().refuse(&["--scenario", "gone.toml"]), &["gone.toml", "cannot be read"]);
 }
 
 #[test]
 fn an_unknown_key_is_refused_with_the_nearest() {
-    says(
-        &refusal("kp = 100", "pk = 100"),
-        &["bad.toml:9", "`pk`", "did you mean `kp`?"],
-    );
-    says(
-        &refusal("amplitude =", "amplitud ="),
-        &["bad.toml:5", "`amplitud`", "did you mean `amplitude`?"],
-    );
-    says(
-        &refusal("title", "titel"),
-        &["bad.toml:1", "`titel`", "did you mean `title`?"],
-    );
+    says(&refusal("kp = 100", "pk = 100"), &["bad.toml:9", "`pk`", "did you mean `kp`?"]);
+    says(&refusal("amplitude =", "amplitud ="), &["bad.toml:5", "`amplitud`", "did you mean `amplitude`?"]);
+    says(&refusal("title", "titel"), &["bad.toml:1", "`titel`", "did you mean `title`?"]);
 }
 
 #[test]
 fn wrong_values_are_refused_with_their_line() {
-    says(
-        &refusal("kp = 100", "kp = -1"),
-        &["bad.toml:9", "controller.kp", "joint1", "-1", "must not be negative"],
-    );
-    says(
-        &refusal("kp = 100", "kp = nan"),
-        &["bad.toml:9", "controller.kp", "NaN"],
-    );
-    says(
-        &refusal("kp = 100", "kp = \"high\""),
-        &["bad.toml:9", "a number, or a list of numbers"],
-    );
-    says(
-        &refusal("frequency_2 = 0.7", "frequency_2 = 40"),
-        &["bad.toml:7", "Nyquist frequency 40 Hz"],
-    );
+    says(&refusal("kp = 100", "kp = -1"), &["bad.toml:9", "controller.kp", "joint1", "-1", "must not be negative"]);
+    says(&refusal("kp = 100", "kp = nan"), &["bad.toml:9", "controller.kp", "NaN"]);
+    says(&refusal("kp = 100", "kp = \"high\""), &["bad.toml:9", "a number, or a list of numbers"]);
+    says(&refusal("frequency_2 = 0.7", "frequency_2 = 40"), &["bad.toml:7", "Nyquist frequency 40 Hz"]);
     says(&refusal("frequency_2 = 0.7\n", ""), &["bad.toml:4", "go together"]);
     says(&refusal("duration = 0.2", "duration = 0"), &["bad.toml:3", "duration"]);
     says(&refusal("duration = 0.2", "duration = "), &["bad.toml:3"]);
-    says(
-        &refusal("kp = 100", "feedback = \"pid\""),
-        &["bad.toml:9", "\"pid\"", "mass-matrix", "gains"],
-    );
+    says(&refusal("kp = 100", "feedback = \"pid\""), &["bad.toml:9", "\"pid\"", "mass-matrix", "gains"]);
     says(&refusal("puma560", "puma650"), &["bad.toml:2", "puma650", "puma560"]);
-    says(
-        &refusal("0.5, 0.5]", "0.5]"),
-        &["bad.toml:5", "5 values", "6 joints", "joint1"],
-    );
+    says(&refusal("0.5, 0.5]", "0.5]"), &["bad.toml:5", "5 values", "6 joints", "joint1"]);
 }
 
 #[test]
@@ -93,17 +60,9 @@ fn a_scenario_for_six_joints_and_a_robot_with_seven_is_refused() {
     std::fs::copy(seven, sandbox.path("seven.urdf")).expect("it can be copied");
     sandbox.write("bad.toml", &GOOD.replace("puma560", "seven.urdf"));
     let message = sandbox.refuse(&["--scenario", "bad.toml", "--model", "true", "--rerun", "off"]);
-    says(
-        &message,
-        &["bad.toml:5", "reference.amplitude has 6 values", "7 joints", "axis7"],
-    );
+    says(&message, &["bad.toml:5", "reference.amplitude has 6 values", "7 joints", "axis7"]);
     // A task for six joints cannot train a robot with seven either.
-    sandbox.write(
-        "good.toml",
-        &GOOD
-            .replace("puma560", "seven.urdf")
-            .replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5"),
-    );
+    sandbox.write("good.toml", &GOOD.replace("puma560", "seven.urdf").replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5"));
     let message = sandbox.refuse(&["--scenario", "good.toml", "--train", "taskA", "--rerun", "off"]);
     says(&message, &["training on taskA", "6 joints", "has 7"]);
 }
@@ -117,16 +76,11 @@ fn a_robot_without_body_is_refused() {
              <parent link=\"base\"/><child link=\"arm\"/><axis xyz=\"0 0 1\"/></joint>\n</robot>"
         );
         sandbox.write("r.urdf", &urdf);
-        let scenario = GOOD
-            .replace("puma560", "r.urdf")
-            .replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5");
+        let scenario = GOOD.replace("puma560", "r.urdf").replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5");
         sandbox.write("bad.toml", &scenario);
         sandbox.refuse(&["--scenario", "bad.toml", "--model", "true", "--rerun", "off"])
     };
-    says(
-        &with(""),
-        &["bad.toml:2", "r.urdf:1", "no moving link with a mass or an inertia"],
-    );
+    says(&with(""), &["bad.toml:2", "r.urdf:1", "no moving link with a mass or an inertia"]);
     let negative = "<inertial><mass value=\"-3\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>";
     says(&with(negative), &["r.urdf:3", "link \"arm\"", "-3 kg"]);
 }
@@ -188,15 +142,7 @@ fn a_loop_that_is_unstable_for_want_of_inertia_says_so() {
         .replace("kp = 100", "feedback = \"gains\"\nkp = 100\nkd = 20");
     sandbox.write("r.toml", &scenario);
     let message = sandbox.refuse(&["--scenario", "r.toml", "--model", "true", "--rerun", "off"]);
-    says(
-        &message,
-        &[
-            "unstable",
-            "joint \"j2\" moves no more than",
-            "<inertial>",
-            "plant.rotor_inertia",
-        ],
-    );
+    says(&message, &["unstable", "joint \"j2\" moves no more than", "<inertial>", "plant.rotor_inertia"]);
     assert!(!message.contains("lower the gains"), "{message}");
 }
 
@@ -212,10 +158,7 @@ fn a_scenario_that_lacks_a_key_says_what_to_add() {
 
 #[test]
 fn a_run_of_no_or_endless_steps_is_refused() {
-    says(
-        &refusal("duration = 0.2", "duration = 0.0001"),
-        &["bad.toml:3", "makes 0 steps"],
-    );
+    says(&refusal("duration = 0.2", "duration = 0.0001"), &["bad.toml:3", "makes 0 steps"]);
     let endless = "duration = 36000\n[controller]\nrate = 100000";
     let sandbox = Sandbox::new();
     sandbox.write(
@@ -252,21 +195,10 @@ fn an_arm_that_cannot_be_simulated_is_refused_before_the_work() {
 <joint name="j1" type="continuous"><parent link="b"/><child link="a"/><axis xyz="0 0 1"/></joint>
 <joint name="j2" type="continuous"><parent link="a"/><child link="tip"/><axis xyz="1 0 0"/></joint></robot>"#;
     sandbox.write("r.urdf", urdf);
-    let scenario = GOOD
-        .replace("puma560", "r.urdf")
-        .replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5");
+    let scenario = GOOD.replace("puma560", "r.urdf").replace("[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]", "0.5");
     sandbox.write("r.toml", &scenario);
     let message = sandbox.refuse(&["--scenario", "r.toml", "--model", "true", "--rerun", "off"]);
-    says(
-        &message,
-        &[
-            "r.toml:2",
-            "r.urdf",
-            "link \"tip\"",
-            "joint \"j2\"",
-            "plant.rotor_inertia",
-        ],
-    );
+    says(&message, &["r.toml:2", "r.urdf", "link \"tip\"", "joint \"j2\"", "plant.rotor_inertia"]);
     sandbox.write("r.toml", &format!("{scenario}[plant]\nrotor_inertia = 0.1\n"));
     sandbox.succeed(&["--scenario", "r.toml", "--model", "true", "--rerun", "off"]);
 }

@@ -39,52 +39,26 @@ fn case(urdf: &str, friction: f64) -> Case {
 #[test]
 fn a_gripper_is_fixed_and_said() {
     let case = case(&with_gripper(), 2.0);
-    let output = case
-        .sandbox
-        .run(&arguments(&["--torques-only", "--json", "o.json", "--mjcf", "o.xml"]));
+    let output = case.sandbox.run(&arguments(&["--torques-only", "--json", "o.json", "--mjcf", "o.xml"]));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    says(
-        &said,
-        &[
-            "robot.urdf",
-            "finger_1 at 0 m (gripper), finger_2 at 0 m (mimics finger_1)",
-        ],
-    );
+    says(&said, &["robot.urdf", "finger_1 at 0 m (gripper), finger_2 at 0 m (mimics finger_1)"]);
     let printed = String::from_utf8_lossy(&output.stdout);
     says(&printed, &["not in o.xml:", "shapes and meshes of the links"]);
     let mjcf = case.text("o.xml");
-    says(
-        &mjcf,
-        &[
-            "<mujoco model=\"trio\">",
-            "frictionloss=\"",
-            "site name=\"finger_1_link\"",
-        ],
-    );
+    says(&mjcf, &["<mujoco model=\"trio\">", "frictionloss=\"", "site name=\"finger_1_link\""]);
     assert_eq!(case.sandbox.json("o.json")["findings"][0]["effect"], "coulomb_friction");
     // A recording of the gripper, too, is a recording of the arm.
     let mut is_header = true;
     let mut more = String::new();
     for line in case.text("a.csv").lines() {
-        more += &format!(
-            "{line}{}\n",
-            if is_header {
-                ",q_finger_1,tau_finger_1"
-            } else {
-                ",0.01,0.2"
-            }
-        );
+        more += &format!("{line}{}\n", if is_header { ",q_finger_1,tau_finger_1" } else { ",0.01,0.2" });
         is_header = false;
     }
     case.sandbox.write("d.csv", &more);
-    let printed = case
-        .sandbox
-        .succeed(&["inspect", "d.csv", "--robot", "robot.urdf", "--lock", "finger_1=0.01"]);
+    let printed = case.sandbox.succeed(&["inspect", "d.csv", "--robot", "robot.urdf", "--lock", "finger_1=0.01"]);
     assert!(!printed.contains("no such joint"), "{printed}");
-    let refused = case
-        .sandbox
-        .refuse(&["inspect", "d.csv", "--robot", "robot.urdf", "--lock", "finger_1=1"]);
+    let refused = case.sandbox.refuse(&["inspect", "d.csv", "--robot", "robot.urdf", "--lock", "finger_1=1"]);
     says(&refused, &["robot.urdf:", "finger_1", "0 … 0.04"]);
 }
 
@@ -93,14 +67,8 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
     let case = case(&with_branch(), 0.0);
     let run = |list: &[&str]| case.sandbox.run(list);
     let inspect = run(&["inspect", "a.csv", "--robot", "robot.urdf"]);
-    let (printed, said) = (
-        String::from_utf8_lossy(&inspect.stdout),
-        String::from_utf8_lossy(&inspect.stderr),
-    );
-    assert!(
-        inspect.status.success() && !printed.contains("no such joint"),
-        "{printed}{said}"
-    );
+    let (printed, said) = (String::from_utf8_lossy(&inspect.stdout), String::from_utf8_lossy(&inspect.stderr));
+    assert!(inspect.status.success() && !printed.contains("no such joint"), "{printed}{said}");
     says(&said, &["swing at 0 rad (not recorded)"]);
     // Without a recording it has to be chosen.
     let effects =
@@ -109,10 +77,7 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
     let conceal = words("conceal --robot robot.urdf --effects e.toml --out made --training 1");
     let flags =
         "--base column --tip fore (2 joints: shoulder … elbow) or --base floor --tip fore (3 joints: turn … elbow)";
-    says(
-        &case.sandbox.refuse(&conceal),
-        &["--robot: robot.urdf:1: ", "with 2 ends", flags],
-    );
+    says(&case.sandbox.refuse(&conceal), &["--robot: robot.urdf:1: ", "with 2 ends", flags]);
     let chosen = [&conceal[..], &["--tip", "fore", "--lock", "swing=0.5"]].concat();
     case.sandbox.succeed(&chosen);
     // The case needs no flags.
@@ -123,19 +88,12 @@ fn the_arm_of_a_branching_robot_is_the_recorded_one_or_chosen() {
     case.sandbox.write("s.toml", scenario);
     let task = ["--scenario", "s.toml", "--rerun", "off"];
     says(&case.sandbox.refuse(&task), &["s.toml:1", "with 2 ends"]);
-    case.sandbox
-        .succeed(&[&task[..], &["--base", "column", "--tip", "fore", "--out", "two"]].concat());
-    assert_eq!(
-        case.sandbox.json("two/summary.json")["joints"],
-        serde_json::json!(["shoulder", "elbow"])
-    );
+    case.sandbox.succeed(&[&task[..], &["--base", "column", "--tip", "fore", "--out", "two"]].concat());
+    assert_eq!(case.sandbox.json("two/summary.json")["joints"], serde_json::json!(["shoulder", "elbow"]));
     let table = "[chain]\ntip = \"pole\"\nlock = { turn = 0.2 }\n[model]";
     case.sandbox.write("s.toml", &scenario.replace("[model]", table));
     case.sandbox.succeed(&[&task[..], &["--out", "one"]].concat());
-    assert_eq!(
-        case.sandbox.json("one/summary.json")["joints"],
-        serde_json::json!(["swing"])
-    );
+    assert_eq!(case.sandbox.json("one/summary.json")["joints"], serde_json::json!(["swing"]));
     // One choice is of one robot.
     let two = ["prove", "--robot", "puma560", "robot.urdf", "--tip", "fore"];
     says(&case.sandbox.refuse(&two), &["--tip fore", "one robot"]);
@@ -149,23 +107,13 @@ fn a_corrected_urdf_diagnosed_again_leaves_nothing_to_find() {
     assert!(placeholder.contains(axis));
     let placeholder = placeholder.replace(axis, &axis.replace("</joint>", "<dynamics damping=\"10\"/></joint>"));
     let case = case(&placeholder, 2.0);
-    let output = case
-        .sandbox
-        .run(&arguments(&words("--torques-only --json o.json --urdf corrected.urdf")));
+    let output = case.sandbox.run(&arguments(&words("--torques-only --json o.json --urdf corrected.urdf")));
     let said = String::from_utf8_lossy(&output.stderr);
-    says(
-        &said,
-        &[
-            "the friction in <dynamics> of elbow is not used",
-            "--urdf-friction known",
-        ],
-    );
+    says(&said, &["the friction in <dynamics> of elbow is not used", "--urdf-friction known"]);
     let found = case.sandbox.json("o.json");
     let names = |found: &serde_json::Value| -> Vec<String> {
         let findings = found["findings"].as_array().expect("a list").iter();
-        findings
-            .map(|finding| format!("{}:{}", finding["effect"], finding["joint"]))
-            .collect()
+        findings.map(|finding| format!("{}:{}", finding["effect"], finding["joint"])).collect()
     };
     assert_eq!(names(&found), ["\"coulomb_friction\":\"shoulder\""]);
     let mut again = arguments(&["--torques-only", "--json", "again.json", "--urdf", "again.urdf"]);
@@ -179,25 +127,14 @@ fn a_corrected_urdf_diagnosed_again_leaves_nothing_to_find() {
     // Unless it is to be found again.
     again.extend(["--urdf-friction", "ignored"]);
     case.sandbox.succeed(&again);
-    assert_eq!(
-        names(&case.sandbox.json("again.json")),
-        ["\"coulomb_friction\":\"shoulder\""]
-    );
+    assert_eq!(names(&case.sandbox.json("again.json")), ["\"coulomb_friction\":\"shoulder\""]);
 }
 
 #[test]
 fn another_robots_format_is_named() {
     let case = case(URDF, 0.0);
-    case.sandbox
-        .write("robot.urdf", "<mujoco model=\"trio\"><worldbody/></mujoco>");
-    says(
-        &case.sandbox.refuse(&arguments(&[])),
-        &["robot.urdf:1: is MJCF", "give the URDF"],
-    );
-    case.sandbox
-        .write("robot.urdf", "<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"></sdf>");
-    says(
-        &case.sandbox.refuse(&arguments(&[])),
-        &["robot.urdf:2: is SDF", "give the URDF"],
-    );
+    case.sandbox.write("robot.urdf", "<mujoco model=\"trio\"><worldbody/></mujoco>");
+    says(&case.sandbox.refuse(&arguments(&[])), &["robot.urdf:1: is MJCF", "give the URDF"]);
+    case.sandbox.write("robot.urdf", "<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"></sdf>");
+    says(&case.sandbox.refuse(&arguments(&[])), &["robot.urdf:2: is SDF", "give the URDF"]);
 }

@@ -19,21 +19,12 @@ const SLIDER: &str = r#"<robot name="slider"><link name="rail"/>
 fn the_main_job_leaves_a_recording_and_a_summary() {
     let sandbox = Sandbox::new();
     let printed = sandbox.succeed(&["--scenario", "taskD", "--model", "rigid-body", "--rerun", "off"]);
-    assert!(
-        printed.contains("joint6") && printed.contains("real-time factor"),
-        "{printed}"
-    );
+    assert!(printed.contains("joint6") && printed.contains("real-time factor"), "{printed}");
     assert_eq!(sandbox.list("runs"), ["001-taskD-rigid-body"]);
-    assert_eq!(
-        sandbox.list("runs/001-taskD-rigid-body"),
-        ["recording.csv", "summary.json"]
-    );
+    assert_eq!(sandbox.list("runs/001-taskD-rigid-body"), ["recording.csv", "summary.json"]);
     let summary = sandbox.json("runs/001-taskD-rigid-body/summary.json");
     assert_eq!(summary["tracking"][0]["model"], "rigid_body");
-    assert_eq!(
-        summary["tracking"][0]["rms_error_rad"].as_array().map(Vec::len),
-        Some(6)
-    );
+    assert_eq!(summary["tracking"][0]["rms_error_rad"].as_array().map(Vec::len), Some(6));
     assert!(summary["real_time_factor"].as_f64().is_some_and(|factor| factor > 0.0));
     assert!(summary["control_step_us"]["p99"].as_f64() >= summary["control_step_us"]["median"].as_f64());
     let error = summary["torque_mse"][1].as_f64().expect("a number");
@@ -49,10 +40,7 @@ fn joints_that_hardly_learn_are_named_and_length_scales_are_chosen() {
     let sandbox = Sandbox::new();
     let scenario = |model: &str| short_scenario("").replace("[model]\n", &format!("[model]\n{model}"));
     // Half a second of another motion teaches nothing about this one.
-    sandbox.write(
-        "other.toml",
-        &short_scenario("").replace("frequency_1 = 0.4", "frequency_1 = 3.0"),
-    );
+    sandbox.write("other.toml", &short_scenario("").replace("frequency_1 = 0.4", "frequency_1 = 3.0"));
     sandbox.write("one.toml", &scenario("kind = \"gp\"\n"));
     let run = |file: &str, more: &[&str]| {
         let usual = ["--scenario", file, "--rerun", "off", "--json", "s.json"];
@@ -75,10 +63,7 @@ fn joints_that_hardly_learn_are_named_and_length_scales_are_chosen() {
     run("each.toml", &["--train", "other.toml", "--length-scales", "one"]);
     assert_eq!(scales(), Some(1));
     let printed = run("one.toml", &["--train", "one.toml"]);
-    assert!(
-        !printed.contains("torque error on") && !printed.contains("--length-scales"),
-        "{printed}"
-    );
+    assert!(!printed.contains("torque error on") && !printed.contains("--length-scales"), "{printed}");
     sandbox.write("wrong.toml", &scenario("length_scales = \"two\"\n"));
     let message = sandbox.refuse(&["--scenario", "wrong.toml"]);
     assert!(message.contains("known: one, per-input"), "{message}");
@@ -87,10 +72,7 @@ fn joints_that_hardly_learn_are_named_and_length_scales_are_chosen() {
 #[test]
 fn an_approximation_says_how_far_off_it_is() {
     let sandbox = Sandbox::new();
-    sandbox.write(
-        "one.toml",
-        &short_scenario("[training]\nscenarios = [\"taskC\"]\n[sensors]\ntorque_noise = 0.5\n"),
-    );
+    sandbox.write("one.toml", &short_scenario("[training]\nscenarios = [\"taskC\"]\n[sensors]\ntorque_noise = 0.5\n"));
     let run = |more: &[&str]| {
         let usual = ["--scenario", "one.toml", "--rerun", "off", "--json", "s.json"];
         let printed = sandbox.succeed(&[&usual[..], more].concat());
@@ -113,9 +95,7 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     sandbox.write("noisy.toml", &noisy);
     let record = |seed: &str, out: &str, threads: &str| {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_testbed"))
-            .args(words(
-                "--scenario noisy.toml --model independent-joint-13 --train noisy.toml",
-            ))
+            .args(words("--scenario noisy.toml --model independent-joint-13 --train noisy.toml"))
             .args(["--rerun", "off", "--seed", seed, "--out", out])
             .env("RAYON_NUM_THREADS", threads)
             .current_dir(sandbox.path(""))
@@ -133,21 +113,14 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
 fn a_model_learns_from_the_recording_of_a_run() {
     let sandbox = Sandbox::new();
     sandbox.write("short.toml", &short_scenario(""));
-    sandbox.succeed(&words(
-        "--scenario short.toml --model rigid-body --rerun off --out first",
-    ));
+    sandbox.succeed(&words("--scenario short.toml --model rigid-body --rerun off --out first"));
     let train = ["--train", "first/recording.csv"];
     let learn = words("--scenario short.toml --model independent-joint-13 --rerun off --json s.json");
     sandbox.succeed(&[&learn[..], &train].concat());
     let before = sandbox.json("first/summary.json");
     let after = sandbox.json("s.json");
     let error = |summary: &serde_json::Value| summary["tracking"][0]["rms_error_rad"][1].as_f64().expect("a number");
-    assert!(
-        error(&after) < 0.1 * error(&before),
-        "{} after {}",
-        error(&after),
-        error(&before)
-    );
+    assert!(error(&after) < 0.1 * error(&before), "{} after {}", error(&after), error(&before));
 }
 
 #[test]
@@ -161,9 +134,7 @@ fn any_arm_runs_with_drives_and_friction() {
     let printed = sandbox.succeed(&words("--scenario slider.toml --model true --rerun off --json s.json"));
     assert!(printed.contains("mm"), "{printed}");
     // Friction is all that the exact rigid-body model leaves to the feedback: about (20.4 + 203.5 × .22) / 20000 m.
-    let error = sandbox.json("s.json")["tracking"][0]["rms_error_rad"][0]
-        .as_f64()
-        .expect("a number");
+    let error = sandbox.json("s.json")["tracking"][0]["rms_error_rad"][0].as_f64().expect("a number");
     assert!((1e-3..5e-3).contains(&error), "{error}");
 }
 
@@ -174,9 +145,8 @@ fn every_model_runs_on_arms_of_one_and_of_four_joints() {
     let four = crate::support::root().join("crates/arm/tests/robots/prismatic.urdf");
     std::fs::copy(four, sandbox.path("prismatic.urdf")).expect("it can be copied");
     for robot in ["slider", "prismatic"] {
-        let scenario = short_scenario("")
-            .replace("puma560", &format!("{robot}.urdf"))
-            .replace("= 0.5\nfreq", "= 0.1\nfreq");
+        let scenario =
+            short_scenario("").replace("puma560", &format!("{robot}.urdf")).replace("= 0.5\nfreq", "= 0.1\nfreq");
         sandbox.write("r.toml", &scenario);
         for model in [
             "true",
@@ -193,11 +163,7 @@ fn every_model_runs_on_arms_of_one_and_of_four_joints() {
             )));
             let error = sandbox.json("s.json")["torque_mse"][0].as_f64().expect("a number");
             // The twelve inputs do not show a carriage's acceleration: on a slider they are all zero.
-            let limit = if matches!(model, "rigid-body" | "independent-joint") {
-                1e4
-            } else {
-                1e-2
-            };
+            let limit = if matches!(model, "rigid-body" | "independent-joint") { 1e4 } else { 1e-2 };
             assert!(error <= limit, "{robot} under {model}: {error}");
         }
     }
@@ -215,9 +181,7 @@ fn a_gap_in_a_recording_does_not_multiply_its_samples() {
         csv += &format!("{t},{},{},{},{}\n", t.sin(), t.cos(), -t.sin(), -95.0 * t.sin());
     }
     sandbox.write("r.csv", &csv);
-    sandbox.succeed(&words(
-        "--scenario r.toml --model gp --train r.csv --rerun off --json s.json",
-    ));
+    sandbox.succeed(&words("--scenario r.toml --model gp --train r.csv --rerun off --json s.json"));
     let summary = sandbox.json("s.json");
     let text = summary["regressions"][0]["conditioning"].as_str().expect("a text");
     // 80 Hz of half a second: 20 samples before the gap and 20 after it.
@@ -247,9 +211,7 @@ fn the_run_is_saved_for_the_viewer() {
     sandbox.write("short.toml", &short_scenario(""));
     sandbox.succeed(&["--scenario", "short.toml", "--model", "true", "--out", "a"]);
     assert_eq!(sandbox.list("a"), ["recording.csv", "run.rrd", "summary.json"]);
-    sandbox.succeed(&words(
-        "--scenario short.toml --model true --out b --rerun save=here.rrd",
-    ));
+    sandbox.succeed(&words("--scenario short.toml --model true --out b --rerun save=here.rrd"));
     assert_eq!(sandbox.list("b"), ["recording.csv", "summary.json"]);
     let bytes = std::fs::read(sandbox.path("here.rrd")).expect("it is there");
     assert!(bytes.starts_with(b"RRF") && bytes.len() > 10_000);
@@ -258,7 +220,5 @@ fn the_run_is_saved_for_the_viewer() {
     assert!(message.contains("is a folder"), "{message}");
     // Nothing listens at this port: the run goes on without a viewer.
     let url = "connect=rerun+http://127.0.0.1:9/proxy";
-    sandbox.succeed(&words(&format!(
-        "--scenario short.toml --model true --out c --rerun {url}"
-    )));
+    sandbox.succeed(&words(&format!("--scenario short.toml --model true --out c --rerun {url}")));
 }

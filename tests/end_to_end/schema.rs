@@ -13,11 +13,7 @@ impl Schema<'_> {
     /// What in `value` is not as `schema` says, with its place.
     fn faults(&self, schema: &Value, value: &Value, place: &str) -> Vec<String> {
         if let Some(any) = schema.as_bool() {
-            return if any {
-                Vec::new()
-            } else {
-                vec![format!("{place}: not allowed")]
-            };
+            return if any { Vec::new() } else { vec![format!("{place}: not allowed")] };
         }
         let mut faults = Vec::new();
         let keywords = schema.as_object().expect("a schema is an object");
@@ -26,10 +22,7 @@ impl Schema<'_> {
                 "$ref" => faults.extend(self.faults(self.definition(argument), value, place)),
                 "anyOf" | "oneOf" => {
                     let list = argument.as_array().expect("a list");
-                    let fits = list
-                        .iter()
-                        .filter(|one| self.faults(one, value, place).is_empty())
-                        .count();
+                    let fits = list.iter().filter(|one| self.faults(one, value, place).is_empty()).count();
                     if fits == 0 || (keyword == "oneOf" && fits > 1) {
                         faults.push(format!("{place}: {fits} of {keyword} fit {value}"));
                     }
@@ -43,10 +36,7 @@ impl Schema<'_> {
                 | "default" => {}
                 "type" => {
                     let is = |name: &Value| is_of_type(value, name.as_str().expect("a type"));
-                    if !argument
-                        .as_array()
-                        .map_or_else(|| is(argument), |list| list.iter().any(is))
-                    {
+                    if !argument.as_array().map_or_else(|| is(argument), |list| list.iter().any(is)) {
                         faults.push(format!("{place}: {value} is no {argument}"));
                     }
                 }
@@ -131,10 +121,9 @@ fn rich(motion: &Motion, tau: &mut [f64]) {
 
 #[test]
 fn diagnoses_are_as_the_schema_says() {
-    for (injected, further) in [
-        (&rich as &dyn Fn(&Motion, &mut [f64]), &["--next", "next.toml"][..]),
-        (&|_, _| {}, &[]),
-    ] {
+    for (injected, further) in
+        [(&rich as &dyn Fn(&Motion, &mut [f64]), &["--next", "next.toml"][..]), (&|_, _| {}, &[])]
+    {
         let case = Case::new(&trio(), injected);
         let mut found = case.json(further);
         assert_eq!(faults(&found), Vec::<String>::new());
@@ -146,13 +135,7 @@ fn diagnoses_are_as_the_schema_says() {
         found.as_object_mut().expect("an object").remove("located");
         found["colour"] = 1.into();
         let said = faults(&found).join("\n");
-        for place in [
-            ".verdict",
-            ".fit.elbow.noise",
-            ".robot",
-            "\"located\" is missing",
-            ".colour",
-        ] {
+        for place in [".verdict", ".fit.elbow.noise", ".robot", "\"located\" is missing", ".colour"] {
             assert!(said.contains(place), "{place} is not in {said}");
         }
     }
@@ -164,10 +147,7 @@ fn every_field_has_a_description() {
         if let Some(properties) = value.get("properties").and_then(Value::as_object) {
             for (name, field) in properties {
                 let place = format!("{place}.{name}");
-                assert!(
-                    field.get("description").is_some_and(Value::is_string),
-                    "{place} has no description"
-                );
+                assert!(field.get("description").is_some_and(Value::is_string), "{place} has no description");
             }
         }
     }

@@ -38,11 +38,7 @@ fn read(path: &Path) -> String {
 #[test]
 fn every_file_opens_with_its_line() {
     for path in all_rust_files() {
-        assert!(
-            read(&path).starts_with("//! "),
-            "{} does not open with a //! line",
-            path.display()
-        );
+        assert!(read(&path).starts_with("//! "), "{} does not open with a //! line", path.display());
     }
 }
 
@@ -50,11 +46,7 @@ fn every_file_opens_with_its_line() {
 fn no_file_is_over_long() {
     for path in all_rust_files() {
         let lines = read(&path).lines().count();
-        assert!(
-            lines <= LONGEST_FILE,
-            "{} has {lines} lines: two rooms in one?",
-            path.display()
-        );
+        assert!(lines <= LONGEST_FILE, "{} has {lines} lines: two rooms in one?", path.display());
     }
 }
 
@@ -77,12 +69,8 @@ fn the_architecture_page_names_the_crates_there_are() {
     let rows = page.lines().filter_map(|line| line.strip_prefix("| `crates/"));
     let mut named: Vec<&str> = rows.filter_map(|row| row.split('`').next()).collect();
     named.sort_unstable();
-    let entries = std::fs::read_dir(crate::support::root().join("crates"))
-        .expect("the folder can be read")
-        .flatten();
-    let mut there: Vec<String> = entries
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
+    let entries = std::fs::read_dir(crate::support::root().join("crates")).expect("the folder can be read").flatten();
+    let mut there: Vec<String> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     there.sort_unstable();
     assert_eq!(named, there);
 }
@@ -95,10 +83,7 @@ fn every_scenario_and_robot_comes_with_the_program() {
         ("assets", "crates/study/robots", "crates/study/src/robot.rs"),
     ] {
         let list = read(&crate::support::root().join(library));
-        for entry in std::fs::read_dir(crate::support::root().join(part))
-            .expect("the folder can be read")
-            .flatten()
-        {
+        for entry in std::fs::read_dir(crate::support::root().join(part)).expect("the folder can be read").flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
             assert!(list.contains(&format!("/{name}\")")), "{name} is not in {library}");
             let link = crate::support::root().join(folder).join(&name);
@@ -106,15 +91,11 @@ fn every_scenario_and_robot_comes_with_the_program() {
         }
     }
     let ready = read(&crate::support::root().join("crates/recording/src/dialect.rs"));
-    for entry in std::fs::read_dir(crate::support::root().join("assets/maps"))
-        .expect("the folder can be read")
-        .flatten()
+    for entry in
+        std::fs::read_dir(crate::support::root().join("assets/maps")).expect("the folder can be read").flatten()
     {
         let name = entry.path().file_stem().expect("a file").to_string_lossy().into_owned();
-        assert!(
-            ready.contains(&format!("ready!(\"{name}\")")),
-            "{name} is not in dialect.rs"
-        );
+        assert!(ready.contains(&format!("ready!(\"{name}\")")), "{name} is not in dialect.rs");
     }
 }
 
@@ -129,18 +110,11 @@ fn row(kind: &dyn EffectKind) -> String {
             (None, _) => unit,
         };
         let key = parameter.key;
-        if remark.is_empty() {
-            format!("`{key}`")
-        } else {
-            format!("`{key}` ({remark})")
-        }
+        if remark.is_empty() { format!("`{key}`") } else { format!("`{key}` ({remark})") }
     };
     let other = kind.has_other().then(|| "`other` (a joint)".to_owned());
     let onset = spec.may_set_in.then(|| "`onset` (s)".to_owned());
-    let parameters = other
-        .into_iter()
-        .chain(spec.parameters.iter().map(parameter))
-        .chain(onset);
+    let parameters = other.into_iter().chain(spec.parameters.iter().map(parameter)).chain(onset);
     let parameters = parameters.collect::<Vec<_>>().join(", ");
     let formula = spec.formula.replace('|', "\\|");
     format!("| `{}` | {formula} | {parameters} |\n", spec.name)
@@ -172,21 +146,14 @@ fn the_published_schema_is_that_of_the_program() {
         std::fs::write(&path, schema).expect("the schema can be written");
         return;
     }
-    assert!(
-        read(&path) == schema,
-        "UPDATE_DOCS=1 writes docs/diagnosis.schema.json anew"
-    );
+    assert!(read(&path) == schema, "UPDATE_DOCS=1 writes docs/diagnosis.schema.json anew");
 }
 
 /// The documentation's pages, by name.
 fn pages() -> Vec<String> {
     let entries = std::fs::read_dir(crate::support::root().join("docs")).expect("the folder can be read");
-    let names = entries
-        .flatten()
-        .map(|entry| entry.file_name().to_string_lossy().into_owned());
-    let mut names: Vec<String> = names
-        .filter(|name| name.ends_with(".md") && name != "SUMMARY.md")
-        .collect();
+    let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names.filter(|name| name.ends_with(".md") && name != "SUMMARY.md").collect();
     names.sort();
     names
 }
@@ -217,20 +184,14 @@ fn the_books_contents_name_every_page() {
 /// The name under which a heading can be linked to.
 fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase();
-    let kept = kept
-        .chars()
-        .filter(|&c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    let kept = kept.chars().filter(|&c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
 #[test]
 fn no_link_is_dead() {
     let root = crate::support::root();
-    let mut files = vec![
-        "README.md".to_owned(),
-        "ARCHITECTURE.md".into(),
-        "examples/README.md".into(),
-    ];
+    let mut files = vec!["README.md".to_owned(), "ARCHITECTURE.md".into(), "examples/README.md".into()];
     files.extend(pages().into_iter().map(|page| format!("docs/{page}")));
     for file in files {
         let path = root.join(&file);
@@ -238,17 +199,10 @@ fn no_link_is_dead() {
         let folder = path.parent().expect("a file is in a folder");
         for target in links(&text) {
             let (name, part) = target.split_once('#').unwrap_or((&target, ""));
-            let to = if name.is_empty() {
-                path.clone()
-            } else {
-                folder.join(name)
-            };
+            let to = if name.is_empty() { path.clone() } else { folder.join(name) };
             assert!(to.exists(), "{file} links to {target}, which is not there");
             // The book has no page outside its folder.
-            assert!(
-                !file.starts_with("docs/") || !name.starts_with(".."),
-                "{file} links to {target}"
-            );
+            assert!(!file.starts_with("docs/") || !name.starts_with(".."), "{file} links to {target}");
             if !part.is_empty() {
                 let page = read(&to);
                 let mut headings = page.lines().filter_map(|line| line.strip_prefix('#'));

@@ -9,17 +9,9 @@ fn every_training_set_is_tested_on_every_other_task() {
     let printed = sandbox.succeed(&asked);
     let report = sandbox.json("t.json");
     let rows = report["rows"].as_array().expect("rows");
-    let names: Vec<String> = rows
-        .iter()
-        .map(|row| format!("{} {}", row["train"], row["test"]).replace("task", ""))
-        .collect();
-    let expected = [
-        r#"["A"] "C""#,
-        r#"["A"] "D""#,
-        r#"["C"] "A""#,
-        r#"["C"] "D""#,
-        r#"["A","C"] "D""#,
-    ];
+    let names: Vec<String> =
+        rows.iter().map(|row| format!("{} {}", row["train"], row["test"]).replace("task", "")).collect();
+    let expected = [r#"["A"] "C""#, r#"["A"] "D""#, r#"["C"] "A""#, r#"["C"] "D""#, r#"["A","C"] "D""#];
     assert_eq!(names, expected);
     for row in rows {
         for key in ["error", "rigid", "predicted", "likelihood"] {

@@ -21,22 +21,10 @@ fn names_are_no_part_of_the_page() {
         let text =
             std::fs::read_to_string(root().join("tests/cases/spring_and_payload").join(case)).expect("it is there");
         let quoted = |kind: &str| format!("\"{kind}_{}\"", EVIL.replace('"', "\"\""));
-        let text = text
-            .replacen("q_elbow", &quoted("q"), 1)
-            .replacen("tau_elbow", &quoted("tau"), 1);
+        let text = text.replacen("q_elbow", &quoted("q"), 1).replacen("tau_elbow", &quoted("tau"), 1);
         sandbox.write(name, &text);
     }
-    let arguments = [
-        "diagnose",
-        "--robot",
-        "arm.urdf",
-        "--train",
-        &train,
-        "--held-out",
-        "b.csv",
-        "--report",
-        "p.html",
-    ];
+    let arguments = ["diagnose", "--robot", "arm.urdf", "--train", &train, "--held-out", "b.csv", "--report", "p.html"];
     sandbox.succeed(
         &[
             &arguments[..],
@@ -57,10 +45,7 @@ fn names_are_no_part_of_the_page() {
     let markdown = std::fs::read_to_string(sandbox.path("p.md")).expect("it is there");
     // Code spans show what they hold.
     let outside: String = markdown.lines().flat_map(|line| line.split('`').step_by(2)).collect();
-    assert!(
-        !outside.contains("<script>alert") && !outside.contains("<img src=x"),
-        "{markdown}"
-    );
+    assert!(!outside.contains("<script>alert") && !outside.contains("<img src=x"), "{markdown}");
     // What was written is read again.
     let found = sandbox.json("d.json").to_string();
     assert!(found.contains("onerror"), "{found}");
@@ -97,11 +82,7 @@ fn names_are_no_commands_for_the_terminal() {
         sandbox.write("arm.urdf", &urdf.replacen(from, to, 1));
         let said = sandbox.refuse(&["inspect", "a.csv", "--robot", "arm.urdf"]);
         assert!(!has_controls(&said), "{said:?}");
-        assert_eq!(
-            said.lines().filter(|line| line.starts_with("error:")).count(),
-            1,
-            "{said}"
-        );
+        assert_eq!(said.lines().filter(|line| line.starts_with("error:")).count(), 1, "{said}");
         said
     };
     let said = refused("joint name=\"elbow\"", "joint name=\"elbow&#10;error: &#27;[2Jfine\"");

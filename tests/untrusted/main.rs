@@ -45,16 +45,12 @@ fn corpus(folders: &[&str]) -> Vec<Vec<u8>> {
         files(&root().join(folder), &mut found);
     }
     found.sort();
-    let small = found
-        .iter()
-        .filter(|path| path.metadata().expect("it is there").len() <= LARGEST);
+    let small = found.iter().filter(|path| path.metadata().expect("it is there").len() <= LARGEST);
     small.map(|path| std::fs::read(path).expect("it can be read")).collect()
 }
 
 fn setting(name: &str, usual: u64) -> u64 {
-    std::env::var(name)
-        .map(|text| text.parse().expect("a number"))
-        .unwrap_or(usual)
+    std::env::var(name).map(|text| text.parse().expect("a number")).unwrap_or(usual)
 }
 
 /// Words and numbers at which parsers go wrong.
@@ -135,11 +131,7 @@ fn check(name: &str, folders: &[&str], rounds: u64, target: fn(&[u8])) {
             let kept = std::env::temp_dir().join(format!("untrusted_{name}"));
             std::fs::write(&kept, bytes).expect("it can be written");
             let most = memory.bytes_max;
-            panic!(
-                "{name}: {} bytes panic or ask for {most} bytes; they are kept as {}",
-                bytes.len(),
-                kept.display()
-            );
+            panic!("{name}: {} bytes panic or ask for {most} bytes; they are kept as {}", bytes.len(), kept.display());
         }
     };
     for seed in &seeds {
@@ -153,12 +145,7 @@ fn check(name: &str, folders: &[&str], rounds: u64, target: fn(&[u8])) {
 
 #[test]
 fn robots() {
-    check(
-        "urdf",
-        &["fuzz/corpus/urdf", "crates/arm/tests/robots"],
-        300,
-        targets::urdf,
-    );
+    check("urdf", &["fuzz/corpus/urdf", "crates/arm/tests/robots"], 300, targets::urdf);
 }
 
 #[test]
@@ -175,22 +162,12 @@ fn recordings() {
 
 #[test]
 fn scenarios() {
-    check(
-        "scenario",
-        &["fuzz/corpus/scenario", "scenarios"],
-        400,
-        targets::scenario,
-    );
+    check("scenario", &["fuzz/corpus/scenario", "scenarios"], 400, targets::scenario);
 }
 
 #[test]
 fn column_maps() {
-    check(
-        "column_map",
-        &["fuzz/corpus/column_map", "assets/maps"],
-        200,
-        targets::column_map,
-    );
+    check("column_map", &["fuzz/corpus/column_map", "assets/maps"], 200, targets::column_map);
 }
 
 #[test]

@@ -12,9 +12,7 @@ fn arm() -> Arm {
 /// 256 different states, so that branch prediction and caches cannot adapt to one.
 fn states(n: usize) -> Vec<[Vec<f64>; 3]> {
     let vector = |k: usize, phase: f64| (0..n).map(|i| ((k * 7 + i) as f64 * 0.37 + phase).sin()).collect();
-    (0..256)
-        .map(|k| [vector(k, 0.0), vector(k, 1.0), vector(k, 2.0)])
-        .collect()
+    (0..256).map(|k| [vector(k, 0.0), vector(k, 1.0), vector(k, 2.0)]).collect()
 }
 
 fn run(bencher: Bencher, mut call: impl FnMut(&Arm, &mut Workspace, &[Vec<f64>; 3], &mut [f64])) {

@@ -29,9 +29,7 @@ fn fastest(states: usize, mut pass: impl FnMut()) -> f64 {
 
 fn main() {
     let urdf = std::env::args().nth(1).expect("usage: arm_peers ROBOT.urdf [STATES]");
-    let states = std::env::args()
-        .nth(2)
-        .map_or(STATES, |states| states.parse().expect("a number"));
+    let states = std::env::args().nth(2).map_or(STATES, |states| states.parse().expect("a number"));
     let arm = Arm::from_urdf(&urdf).expect("the robot loads");
     let n = arm.dof();
     let value = |k: usize, i: usize, phase: f64| ((k * 7 + i) as f64 * 0.37 + phase).sin();
@@ -122,20 +120,11 @@ fn main() {
     together("mass_matrix_batch", &usual, n, &|[q, ..], mass| {
         arm.mass_matrix_batch(q, mass);
     });
-    together(
-        "regressor_batch",
-        &small,
-        n * PARAMETERS_PER_LINK,
-        &|[q, qd, qdd], regressor| {
-            arm.torque_regressor_batch(q, qd, qdd, regressor);
-        },
-    );
+    together("regressor_batch", &small, n * PARAMETERS_PER_LINK, &|[q, qd, qdd], regressor| {
+        arm.torque_regressor_batch(q, qd, qdd, regressor);
+    });
 
     let times: Vec<String> = rows.iter().map(|(name, ns)| format!("\"{name}\": {ns:.2}")).collect();
     let sums: Vec<String> = sums.iter().map(|sum| format!("{sum:.17e}")).collect();
-    println!(
-        "{{\"ns\": {{{}}}, \"sums\": [{}], \"dof\": {n}}}",
-        times.join(", "),
-        sums.join(", ")
-    );
+    println!("{{\"ns\": {{{}}}, \"sums\": [{}], \"dof\": {n}}}", times.join(", "), sums.join(", "));
 }

@@ -209,20 +209,12 @@ impl<R: Recursion, const I: usize, const O: usize> WithSimd for Evaluation<'_, R
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            arm,
-            recursion,
-            samples,
-            ..
-        } = self;
+        let Self { arm, recursion, samples, .. } = self;
         let zero = Lanes::constant(simd, 0.0);
         let mut scratch = Scratch::new(simd, arm.dof());
         let columns = self.inputs.iter().flat_map(|input| input.chunks_exact(samples));
         let inputs: Vec<&[f64]> = columns.collect();
-        let columns = self
-            .outputs
-            .into_iter()
-            .flat_map(|output| output.chunks_exact_mut(samples));
+        let columns = self.outputs.into_iter().flat_map(|output| output.chunks_exact_mut(samples));
         let mut outputs: Vec<(usize, &mut [f64])> = columns.enumerate().collect();
         let mut output = vec![zero; outputs.len()];
         outputs.retain(|(entry, _)| !recursion.is_zero(arm.dof(), *entry));

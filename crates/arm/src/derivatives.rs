@@ -43,10 +43,7 @@ impl Arm {
 
     /// The recursion of [`Self::inverse_dynamics_derivatives`]; the matrices are stored column after column.
     #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "three inputs and two outputs, as the public function"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "three inputs and two outputs, as the public function")]
     pub(crate) fn tangents<T: Real>(
         &self,
         context: T::Context,
@@ -77,9 +74,7 @@ impl Arm {
                 .inertia_times(&at.acceleration)
                 .plus(&body.coriolis_times(context, &at.velocity.0))
                 .plus(&s.cross_wrench(&body.wrench));
-            let faster = body
-                .inertia_times(&at.by_speed)
-                .plus(&body.coriolis_times(context, &s.0));
+            let faster = body.inertia_times(&at.by_speed).plus(&body.coriolis_times(context, &s.0));
             for (k, before) in tangents[..i].iter().enumerate() {
                 by_position[i * n + k] = before.unit.dot(&moved);
                 by_velocity[i * n + k] = before.unit.dot(&faster);
@@ -91,10 +86,7 @@ impl Arm {
     #[inline(always)]
     fn propagate_tangents<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, qd: &[T], qdd: &[T]) {
         let zero = Vec3::zeros(context);
-        let (mut v, mut a) = (
-            Spatial::zeros(context),
-            Spatial(zero, Vec3::constant(context, &-self.gravity)),
-        );
+        let (mut v, mut a) = (Spatial::zeros(context), Spatial(zero, Vec3::constant(context, &-self.gravity)));
         let mut r = Mat3::constant(context, &nalgebra::Matrix3::identity());
         let mut o = zero;
         let Scratch { places, tangents, .. } = scratch;

@@ -51,18 +51,14 @@ impl Arm {
         let inertias = links.iter().map(|link| link.d);
         let largest = inertias.clone().fold(0.0, f64::max);
         // The recursion goes from the tip to the base: beyond the last such joint, it has not yet divided by zero.
-        (0..self.dof())
-            .rev()
-            .find(|&i| links[i].d.is_nan() || links[i].d <= 1e-12 * largest)
+        (0..self.dof()).rev().find(|&i| links[i].d.is_nan() || links[i].d <= 1e-12 * largest)
     }
 
     /// Base to tip: velocities, velocity products c, bias wrenches p^A and the links' own inertias.
     #[inline(always)]
     fn propagate_velocities<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, q: &[T], qd: &[T]) {
         self.place(context, scratch, q, 0);
-        let Scratch {
-            places, articulated, ..
-        } = scratch;
+        let Scratch { places, articulated, .. } = scratch;
         let mut w = Vec3::zeros(context);
         let mut v = Vec3::zeros(context);
         for (((joint, place), link), &qd) in self.joints.iter().zip(places).zip(articulated).zip(qd) {
@@ -85,10 +81,7 @@ impl Arm {
 
             let mass = T::constant(context, joint.inertia.mass);
             let first = Vec3::constant(context, &joint.moments.first);
-            let (zero, tensor) = (
-                T::constant(context, 0.0),
-                Mat3::constant(context, &joint.moments.tensor),
-            );
+            let (zero, tensor) = (T::constant(context, 0.0), Mat3::constant(context, &joint.moments.tensor));
             link.rotational = tensor;
             link.coupling = cross_matrix(context, &first);
             link.translational = symmetric(mass, zero, zero, mass, zero, mass);
@@ -103,9 +96,7 @@ impl Arm {
     /// Tip to base: articulated inertias and bias wrenches.
     #[inline(always)]
     fn articulate<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, tau: &[T]) {
-        let Scratch {
-            places, articulated, ..
-        } = scratch;
+        let Scratch { places, articulated, .. } = scratch;
         for (i, joint) in self.joints.iter().enumerate().rev() {
             let (proximal, distal) = articulated.split_at_mut(i);
             let link = &mut distal[0];
@@ -143,10 +134,7 @@ impl Arm {
 
             // To the parent's frame: rotate the blocks, then shift the origin by p. With C' = C + [p]× M, the shifted
             // rotational block is I + [p]× C'ᵀ + ([p]× Cᵀ)ᵀ.
-            let Place {
-                rotation: r,
-                translation: p,
-            } = &places[i];
+            let Place { rotation: r, translation: p } = &places[i];
             let rotational = rotate_symmetric(r, &rotational);
             let coupling = product_tr(&product(r, &coupling), r);
             let translational = rotate_symmetric(r, &translational);

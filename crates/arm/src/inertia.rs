@@ -18,11 +18,7 @@ pub struct Inertia {
 impl Inertia {
     /// A body without mass.
     pub fn zero() -> Self {
-        Self {
-            mass: 0.0,
-            com: Vector3::zeros(),
-            tensor: Matrix3::zeros(),
-        }
+        Self { mass: 0.0, com: Vector3::zeros(), tensor: Matrix3::zeros() }
     }
 
     /// The inertia tensor about the link frame's origin (kg m²).
@@ -44,20 +40,12 @@ impl Inertia {
     /// The combination of two bodies that are fixed to each other, in their common frame.
     pub fn merged(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
-        let com = if mass > 0.0 {
-            (self.mass * self.com + other.mass * other.com) / mass
-        } else {
-            Vector3::zeros()
-        };
+        let com = if mass > 0.0 { (self.mass * self.com + other.mass * other.com) / mass } else { Vector3::zeros() };
         let about = |body: &Self| {
             let c = cross_matrix(&(body.com - com));
             body.tensor - body.mass * c * c
         };
-        Self {
-            mass,
-            com,
-            tensor: about(self) + about(other),
-        }
+        Self { mass, com, tensor: about(self) + about(other) }
     }
 
     /// The ten inertial parameters in which the torque is linear: m, m c (3), and Ixx, Ixy, Iyy, Ixz, Iyz, Izz about
@@ -65,18 +53,7 @@ impl Inertia {
     pub fn parameters(&self) -> [f64; 10] {
         let h = self.mass * self.com;
         let i = self.tensor_about_origin();
-        [
-            self.mass,
-            h.x,
-            h.y,
-            h.z,
-            i[(0, 0)],
-            i[(0, 1)],
-            i[(1, 1)],
-            i[(0, 2)],
-            i[(1, 2)],
-            i[(2, 2)],
-        ]
+        [self.mass, h.x, h.y, h.z, i[(0, 0)], i[(0, 1)], i[(1, 1)], i[(0, 2)], i[(1, 2)], i[(2, 2)]]
     }
 
     /// The `<inertial>` element of this body in a URDF. The numbers read back to the same bits.

@@ -161,11 +161,7 @@ impl<T: Real> Scratch<T> {
     /// The features of joint `i` with the torque `tau`, after the recursion.
     #[inline(always)]
     pub(crate) fn features(&self, context: T::Context, i: usize, tau: T) -> [T; FEATURES] {
-        let LinkMotion {
-            angular_velocity: w,
-            angular_acceleration: wd,
-            ..
-        } = self.motions[i];
+        let LinkMotion { angular_velocity: w, angular_acceleration: wd, .. } = self.motions[i];
         let zero = Vec3::zeros(context);
         let next = self.motions.get(i + 1).map(|next| (next.moment, next.force));
         let (n, f) = next.unwrap_or((zero, zero));

@@ -73,10 +73,7 @@ impl Joint {
             JointKind::Revolute => {
                 let (sin, cos) = Real::sin_cos(q);
                 let [r0, r1, r2] = &self.rotation_terms;
-                Pose {
-                    rotation: r0 + r1 * sin + r2 * (1.0 - cos),
-                    translation: self.parent_from_joint.translation,
-                }
+                Pose { rotation: r0 + r1 * sin + r2 * (1.0 - cos), translation: self.parent_from_joint.translation }
             }
             JointKind::Prismatic => Pose {
                 rotation: self.rotation_terms[0],

@@ -58,8 +58,6 @@ impl Workspace {
 
     /// The pose of `frame` in the base frame, after [`Arm::forward_kinematics`] or [`Arm::jacobian`].
     pub fn base_from_frame(&self, frame: &Frame) -> Pose {
-        frame.link.map_or(frame.link_from_frame, |link| {
-            self.base_from_link[link].compose(&frame.link_from_frame)
-        })
+        frame.link.map_or(frame.link_from_frame, |link| self.base_from_link[link].compose(&frame.link_from_frame))
     }
 }

@@ -48,10 +48,9 @@ impl Arm {
         // need not be carried farther than to link 1.
         let base_motion = match (places.get(1), base.kind) {
             (None, _) => (base_axis, base_axis),
-            (Some(place), JointKind::Revolute) => (
-                tr_mul(&place.rotation, &base_axis),
-                tr_mul(&place.rotation, &cross(&base_axis, &place.translation)),
-            ),
+            (Some(place), JointKind::Revolute) => {
+                (tr_mul(&place.rotation, &base_axis), tr_mul(&place.rotation, &cross(&base_axis, &place.translation)))
+            }
             (Some(place), JointKind::Prismatic) => (Vec3::zeros(context), tr_mul(&place.rotation, &base_axis)),
         };
         for i in (0..n).rev() {

@@ -82,13 +82,11 @@ impl Arm {
     /// last link, or that link itself.
     pub fn tool_frame(&self) -> Frame {
         let last = self.dof() - 1;
-        self.tool
-            .map(|tool| self.frames[tool].clone())
-            .unwrap_or_else(|| Frame {
-                name: self.joints[last].link_name.clone(),
-                link: Some(last),
-                link_from_frame: Pose::identity(),
-            })
+        self.tool.map(|tool| self.frames[tool].clone()).unwrap_or_else(|| Frame {
+            name: self.joints[last].link_name.clone(),
+            link: Some(last),
+            link_from_frame: Pose::identity(),
+        })
     }
 
     /// The bodies that the URDF fixes to the last moving link and that could be taken off, so that some mass is left.
@@ -132,9 +130,6 @@ impl Arm {
 
     /// The ten inertial parameters of every link, base to tip: the vector that the torque regressor multiplies.
     pub fn inertial_parameters(&self) -> Vec<f64> {
-        self.joints
-            .iter()
-            .flat_map(|joint| joint.inertia.parameters())
-            .collect()
+        self.joints.iter().flat_map(|joint| joint.inertia.parameters()).collect()
     }
 }

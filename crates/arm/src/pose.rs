@@ -14,10 +14,7 @@ pub struct Pose {
 impl Pose {
     /// The identity.
     pub fn identity() -> Self {
-        Self {
-            rotation: Matrix3::identity(),
-            translation: Vector3::zeros(),
-        }
+        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
     /// The pose that URDF writes as `<origin xyz rpy>`: fixed-axis roll, pitch, yaw (rad), then xyz (m).
@@ -52,10 +49,7 @@ impl Pose {
     /// `b_from_a`.
     pub fn inverse(&self) -> Pose {
         let rotation = self.rotation.transpose();
-        Pose {
-            rotation,
-            translation: -(rotation * self.translation),
-        }
+        Pose { rotation, translation: -(rotation * self.translation) }
     }
 
     /// The coordinates in a of a point that is given in b.
@@ -75,11 +69,7 @@ mod tests {
 
     #[test]
     fn poses_go_round() {
-        for rpy in [
-            [0.1, -0.2, 3.0],
-            [0.0, std::f64::consts::FRAC_PI_2, 0.4],
-            [-3.0, 1.5, 0.0],
-        ] {
+        for rpy in [[0.1, -0.2, 3.0], [0.0, std::f64::consts::FRAC_PI_2, 0.4], [-3.0, 1.5, 0.0]] {
             let pose = Pose::from_xyz_rpy([1.0, 2.0, 3.0], rpy);
             let (xyz, rpy) = pose.xyz_rpy();
             let again = Pose::from_xyz_rpy(xyz, rpy);
@@ -87,10 +77,7 @@ mod tests {
             assert_eq!(pose.translation, again.translation);
             let [w, x, y, z] = pose.quaternion();
             let turned = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
-            assert!(
-                (pose.rotation - turned.to_rotation_matrix().matrix()).norm() < 1e-12,
-                "{rpy:?}"
-            );
+            assert!((pose.rotation - turned.to_rotation_matrix().matrix()).norm() < 1e-12, "{rpy:?}");
         }
     }
 }

@@ -60,10 +60,7 @@ impl<S: Simd> Real for Lanes<S> {
 
     #[inline(always)]
     fn constant(simd: S, value: f64) -> Self {
-        Self {
-            simd,
-            values: simd.splat_f64s(value),
-        }
+        Self { simd, values: simd.splat_f64s(value) }
     }
 
     #[inline(always)]

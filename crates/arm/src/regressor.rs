@@ -31,11 +31,7 @@ impl Arm {
     ) {
         workspace.check(self, &[q, qd, qdd]);
         let n = self.dof();
-        assert_eq!(
-            regressor.shape(),
-            (n, n * PARAMETERS_PER_LINK),
-            "the regressor is dof × 10 dof"
-        );
+        assert_eq!(regressor.shape(), (n, n * PARAMETERS_PER_LINK), "the regressor is dof × 10 dof");
         regressor.as_mut_slice().fill(0.0);
         self.link_powers((), &mut workspace.scratch, q, qd, qdd, regressor.as_mut_slice());
     }
@@ -56,17 +52,11 @@ impl Arm {
         self.propagate_motion(context, scratch, q, qd, qdd);
         // For link j, the unit motions of joints 0 … j as twists in link j's frame. The power of such a twist with the
         // wrench that accelerates the link is the joint's torque (virtual work).
-        let Scratch {
-            places,
-            motions,
-            twists,
-            ..
-        } = scratch;
+        let Scratch { places, motions, twists, .. } = scratch;
         let zero = Vec3::zeros(context);
         let links = self.joints.iter().zip(places.iter().zip(motions.iter()));
-        for (j, ((joint, (place, link)), columns)) in links
-            .zip(regressor.chunks_exact_mut(n * PARAMETERS_PER_LINK))
-            .enumerate()
+        for (j, ((joint, (place, link)), columns)) in
+            links.zip(regressor.chunks_exact_mut(n * PARAMETERS_PER_LINK)).enumerate()
         {
             for (angular, linear) in &mut twists[..j] {
                 *linear = tr_mul(&place.rotation, &(*linear + cross(angular, &place.translation)));
@@ -92,11 +82,7 @@ impl Arm {
 /// I ω.
 #[inline(always)]
 fn wrench_row<T: Real>(link: &LinkMotion<T>, angular: &Vec3<T>, linear: &Vec3<T>) -> [T; PARAMETERS_PER_LINK] {
-    let (w, wd, a) = (
-        &link.angular_velocity,
-        &link.angular_acceleration,
-        &link.linear_acceleration,
-    );
+    let (w, wd, a) = (&link.angular_velocity, &link.angular_acceleration, &link.linear_acceleration);
     // linear · W h + angular · (h × a), as a vector dotted with h = mc.
     let h = tr_mul(&link.field, linear) + cross(a, angular);
     // angular · (I ω̇) + (angular × ω) · (I ω): a symmetric bilinear form in I.

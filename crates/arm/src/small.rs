@@ -58,17 +58,7 @@ impl<T: Real> Mat3<T> {
     #[inline(always)]
     pub fn new(rows: [[T; 3]; 3]) -> Self {
         let [[m11, m12, m13], [m21, m22, m23], [m31, m32, m33]] = rows;
-        Self {
-            m11,
-            m21,
-            m31,
-            m12,
-            m22,
-            m32,
-            m13,
-            m23,
-            m33,
-        }
+        Self { m11, m21, m31, m12, m22, m32, m13, m23, m33 }
     }
 
     #[inline(always)]
@@ -94,11 +84,7 @@ impl<T: Real> Mat3<T> {
 
     #[inline(always)]
     pub fn transpose(&self) -> Self {
-        Self::new([
-            [self.m11, self.m21, self.m31],
-            [self.m12, self.m22, self.m32],
-            [self.m13, self.m23, self.m33],
-        ])
+        Self::new([[self.m11, self.m21, self.m31], [self.m12, self.m22, self.m32], [self.m13, self.m23, self.m33]])
     }
 
     #[inline(always)]
@@ -238,22 +224,14 @@ pub(crate) fn outer<T: Real>(a: &Vec3<T>, b: &Vec3<T>) -> Mat3<T> {
 #[inline(always)]
 pub(crate) fn product<T: Real>(a: &Mat3<T>, b: &Mat3<T>) -> Mat3<T> {
     let column = |x: T, y: T, z: T| mul(a, &Vec3::new(x, y, z));
-    Mat3::from_columns(
-        column(b.m11, b.m21, b.m31),
-        column(b.m12, b.m22, b.m32),
-        column(b.m13, b.m23, b.m33),
-    )
+    Mat3::from_columns(column(b.m11, b.m21, b.m31), column(b.m12, b.m22, b.m32), column(b.m13, b.m23, b.m33))
 }
 
 /// A Bᵀ.
 #[inline(always)]
 pub(crate) fn product_tr<T: Real>(a: &Mat3<T>, b: &Mat3<T>) -> Mat3<T> {
     let column = |x: T, y: T, z: T| mul(a, &Vec3::new(x, y, z));
-    Mat3::from_columns(
-        column(b.m11, b.m12, b.m13),
-        column(b.m21, b.m22, b.m23),
-        column(b.m31, b.m32, b.m33),
-    )
+    Mat3::from_columns(column(b.m11, b.m12, b.m13), column(b.m21, b.m22, b.m23), column(b.m31, b.m32, b.m33))
 }
 
 /// The symmetric matrix with these entries.
@@ -293,11 +271,7 @@ pub(crate) fn less_outer<T: Real>(s: &Mat3<T>, u: &Vec3<T>, v: &Vec3<T>) -> Mat3
 #[inline(always)]
 pub(crate) fn cross_columns<T: Real>(v: &Vec3<T>, m: &Mat3<T>) -> Mat3<T> {
     let column = |x: T, y: T, z: T| cross(v, &Vec3::new(x, y, z));
-    Mat3::from_columns(
-        column(m.m11, m.m21, m.m31),
-        column(m.m12, m.m22, m.m32),
-        column(m.m13, m.m23, m.m33),
-    )
+    Mat3::from_columns(column(m.m11, m.m21, m.m31), column(m.m12, m.m22, m.m32), column(m.m13, m.m23, m.m33))
 }
 
 /// \[ω̇\]× + \[ω\]× \[ω\]×: times r, this is the acceleration of point r of a body relative to that of its origin.

@@ -37,10 +37,7 @@ impl Arm {
     /// physically impossible.
     pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, ArmError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|source| ArmError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path).map_err(|source| ArmError::Read { path: path.to_owned(), source })?;
         Self::from_urdf_text(&text, path)
     }
 
@@ -63,12 +60,7 @@ impl Arm {
         let text = syntax::Text::of(text, path)?;
         spelling::check(&text.blanked, path)?;
         let robot = urdf_rs::read_from_string(&text.blanked).map_err(|error| text.explain(path, &error))?;
-        Reader {
-            path,
-            text: &text.blanked,
-            robot: &robot,
-        }
-        .read(options)
+        Reader { path, text: &text.blanked, robot: &robot }.read(options)
     }
 }
 
@@ -111,10 +103,7 @@ impl<'a> Reader<'a> {
             fixed_joints: Vec::new(),
             visuals: Vec::new(),
             gravity: self.gravity(root, &chain)?,
-            warnings: chain::note(&chain.fixed)
-                .into_iter()
-                .chain(chain.warnings.clone())
-                .collect(),
+            warnings: chain::note(&chain.fixed).into_iter().chain(chain.warnings.clone()).collect(),
         };
         let mut body = self.weld(chain.base, &chain)?;
         loop {
@@ -125,11 +114,7 @@ impl<'a> Reader<'a> {
                 if is_tool {
                     arm.tool = Some(arm.frames.len());
                 }
-                arm.frames.push(Frame {
-                    name: frame.name,
-                    link,
-                    link_from_frame: frame.pose,
-                });
+                arm.frames.push(Frame { name: frame.name, link, link_from_frame: frame.pose });
             }
             for (pose, visual) in body.visuals.drain(..) {
                 arm.visuals.push(visual_of(link, &pose, visual));
@@ -139,8 +124,7 @@ impl<'a> Reader<'a> {
                 break;
             };
             body = self.weld(&urdf_joint.child.link, &chain)?;
-            arm.joints
-                .push(self.joint(&link_from_parent, urdf_joint, body.inertia)?);
+            arm.joints.push(self.joint(&link_from_parent, urdf_joint, body.inertia)?);
             self.check_tensor(&mut arm)?;
         }
         if arm.joints.is_empty() {
@@ -181,20 +165,11 @@ impl<'a> Reader<'a> {
             let inertia = self.inertia(link)?.transformed(&body_from_link);
             body.inertia = body.inertia.merged(&inertia);
             if name != first {
-                body.attached.push(Attached {
-                    name: name.to_owned(),
-                    carried_by,
-                    inertia,
-                });
-                body.frames.push(WeldedFrame {
-                    name: name.to_owned(),
-                    pose: body_from_link,
-                    is_rigid,
-                });
+                body.attached.push(Attached { name: name.to_owned(), carried_by, inertia });
+                body.frames.push(WeldedFrame { name: name.to_owned(), pose: body_from_link, is_rigid });
             }
             let place = body.attached.len().checked_sub(1);
-            body.visuals
-                .extend(link.visual.iter().map(|visual| (body_from_link, visual)));
+            body.visuals.extend(link.visual.iter().map(|visual| (body_from_link, visual)));
             for joint in self.robot.joints.iter().filter(|joint| joint.parent.link == name) {
                 match chain.position(&joint.name) {
                     None => body.moving.push((body_from_link, joint)),
@@ -221,10 +196,7 @@ impl<'a> Reader<'a> {
                 rotation: *Rotation3::from_axis_angle(&Unit::new_unchecked(axis), position).matrix(),
                 translation: Vector3::zeros(),
             },
-            JointKind::Prismatic => Pose {
-                rotation: Matrix3::identity(),
-                translation: axis * position,
-            },
+            JointKind::Prismatic => Pose { rotation: Matrix3::identity(), translation: axis * position },
         }))
     }
 
@@ -242,12 +214,9 @@ impl<'a> Reader<'a> {
         let parent_from_joint = link_from_parent.compose(&self.finite_pose(urdf)?);
         let axis = self.axis(urdf)?;
         let limit = &urdf.limit;
-        for (what, value) in [
-            ("lower", limit.lower),
-            ("upper", limit.upper),
-            ("effort", limit.effort),
-            ("velocity", limit.velocity),
-        ] {
+        for (what, value) in
+            [("lower", limit.lower), ("upper", limit.upper), ("effort", limit.effort), ("velocity", limit.velocity)]
+        {
             if value.is_nan() || (value < 0.0 && matches!(what, "effort" | "velocity")) {
                 return Err(self.joint_error(
                     urdf,
@@ -262,10 +231,7 @@ impl<'a> Reader<'a> {
         if limit.lower > limit.upper && !unbounded {
             return Err(self.joint_error(
                 urdf,
-                format!(
-                    "has its lower limit {} above its upper one {}",
-                    limit.lower, limit.upper
-                ),
+                format!("has its lower limit {} above its upper one {}", limit.lower, limit.upper),
                 "swap them",
             ));
         }
@@ -302,11 +268,7 @@ impl<'a> Reader<'a> {
         let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
         let finite = mass.is_finite()
             && tensor.iter().all(|x| x.is_finite())
-            && pose
-                .translation
-                .iter()
-                .chain(pose.rotation.iter())
-                .all(|x| x.is_finite());
+            && pose.translation.iter().chain(pose.rotation.iter()).all(|x| x.is_finite());
         if !finite {
             return Err(self.link_error(
                 &link.name,
@@ -321,11 +283,7 @@ impl<'a> Reader<'a> {
                 "a mass is positive: correct its sign or value",
             ));
         }
-        let centred = Inertia {
-            mass,
-            com: Vector3::zeros(),
-            tensor,
-        };
+        let centred = Inertia { mass, com: Vector3::zeros(), tensor };
         Ok(centred.transformed(&pose))
     }
 
@@ -369,10 +327,9 @@ fn visual_of(link: Option<usize>, link_from_parent: &Pose, visual: &urdf_rs::Vis
             Geometry::Cylinder { radius, length }
         }
         &urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere { radius },
-        urdf_rs::Geometry::Mesh { filename, scale } => Geometry::Mesh {
-            file: filename.clone(),
-            scale: scale.map_or([1.0; 3], |scale| *scale),
-        },
+        urdf_rs::Geometry::Mesh { filename, scale } => {
+            Geometry::Mesh { file: filename.clone(), scale: scale.map_or([1.0; 3], |scale| *scale) }
+        }
     };
     let colour = visual.material.as_ref().and_then(|material| material.color.as_ref());
     Visual {

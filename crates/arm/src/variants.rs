@@ -84,9 +84,7 @@ impl Arm {
     pub fn with_payload(mut self, payload: &Inertia) -> Self {
         let tool = self.tool_frame();
         let last = self.dof() - 1;
-        let body = self.joints[last]
-            .inertia
-            .merged(&payload.transformed(&tool.link_from_frame));
+        let body = self.joints[last].inertia.merged(&payload.transformed(&tool.link_from_frame));
         self.joints[last].set_inertia(body);
         self
     }

@@ -23,9 +23,7 @@ fn robots() -> Vec<PathBuf> {
 /// A signal without repeated values, joint after joint, with one entry per state.
 fn signal(dof: usize, samples: usize, phase: f64) -> Vec<f64> {
     let at = |i: usize, k: usize| 1.7 * ((k * 7 + i) as f64 * 0.37 + phase).sin();
-    (0..dof * samples)
-        .map(|entry| at(entry / samples, entry % samples))
-        .collect()
+    (0..dof * samples).map(|entry| at(entry / samples, entry % samples)).collect()
 }
 
 fn state(signal: &[f64], samples: usize, k: usize) -> Vec<f64> {
@@ -37,11 +35,7 @@ fn assert_same(what: &str, many: &[f64], samples: usize, k: usize, alone: &[f64]
     let many = state(many, samples, k);
     assert_eq!(many.len(), alone.len(), "{what}");
     for (at, (a, b)) in many.iter().zip(alone).enumerate() {
-        assert_eq!(
-            a.to_bits(),
-            b.to_bits(),
-            "{what}, state {k} of {samples}, entry {at}: {a} and {b}"
-        );
+        assert_eq!(a.to_bits(), b.to_bits(), "{what}, state {k} of {samples}, entry {at}: {a} and {b}");
     }
 }
 

@@ -44,17 +44,11 @@ fn names(arm: &Arm) -> Vec<&str> {
 }
 
 fn tip(link: &str) -> ChainOptions {
-    ChainOptions {
-        tip: Some(link.into()),
-        ..ChainOptions::default()
-    }
+    ChainOptions { tip: Some(link.into()), ..ChainOptions::default() }
 }
 
 fn recorded(joints: &[&str]) -> ChainOptions {
-    ChainOptions {
-        recorded: joints.iter().map(|&joint| joint.into()).collect(),
-        ..ChainOptions::default()
-    }
+    ChainOptions { recorded: joints.iter().map(|&joint| joint.into()).collect(), ..ChainOptions::default() }
 }
 
 #[test]
@@ -79,10 +73,7 @@ fn base_and_tip_choose_the_chain() {
     // The carriage carries the left arm: its own mass, two links, the hand and two fingers.
     assert!((arm.joints()[0].inertia.mass - 2.0 * 6.0).abs() < 1e-12);
 
-    let options = ChainOptions {
-        base: Some("carriage".into()),
-        ..tip("hand")
-    };
+    let options = ChainOptions { base: Some("carriage".into()), ..tip("hand") };
     let arm = load(&options).expect("it loads");
     assert_eq!(names(&arm), ["left_shoulder", "left_elbow"]);
     assert_eq!(arm.base_link(), "carriage");
@@ -91,11 +82,7 @@ fn base_and_tip_choose_the_chain() {
     let expected = arm::Vector3::new(9.81 * 0.5_f64.sin(), 0.0, -9.81 * 0.5_f64.cos());
     assert!((arm.gravity() - expected).norm() < 1e-12, "{}", arm.gravity());
     // The lift is not part of this arm, but is listed as fixed.
-    let lift = arm
-        .fixed_joints()
-        .iter()
-        .find(|joint| joint.name == "lift")
-        .expect("it is known");
+    let lift = arm.fixed_joints().iter().find(|joint| joint.name == "lift").expect("it is known");
     assert_eq!((lift.position, lift.is_carried), (0.2, false));
     assert_eq!(lift.reason, FixedBecause::OffChain);
 }
@@ -103,26 +90,15 @@ fn base_and_tip_choose_the_chain() {
 #[test]
 fn an_arm_with_its_lift_fixed_moves_as_the_arm_on_it() {
     // The same physics: the left arm on a base of its own, and on the root with all other joints locked.
-    let own = ChainOptions {
-        base: Some("carriage".into()),
-        ..tip("left_lower")
-    };
+    let own = ChainOptions { base: Some("carriage".into()), ..tip("left_lower") };
     let locked = ChainOptions {
-        locks: ["lift", "right_shoulder", "right_elbow"]
-            .map(|name| (name.into(), 0.3))
-            .into(),
+        locks: ["lift", "right_shoulder", "right_elbow"].map(|name| (name.into(), 0.3)).into(),
         ..ChainOptions::default()
     };
     let torque = |options: &ChainOptions| {
         let arm = load(options).expect("it loads");
         let mut tau = [0.0; 2];
-        arm.inverse_dynamics(
-            &mut Workspace::new(&arm),
-            &[0.3, -0.7],
-            &[1.0, 2.0],
-            &[-3.0, 4.0],
-            &mut tau,
-        );
+        arm.inverse_dynamics(&mut Workspace::new(&arm), &[0.3, -0.7], &[1.0, 2.0], &[-3.0, 4.0], &mut tau);
         tau
     };
     let (a, b) = (torque(&own), torque(&locked));
@@ -141,15 +117,8 @@ fn the_recorded_joints_choose_the_chain() {
     // Both arms were recorded, so that both are possible; a tip decides.
     let both = ["left_shoulder", "left_elbow", "right_shoulder", "right_elbow"];
     assert!(load(&recorded(&both)).is_err());
-    let options = ChainOptions {
-        tip: Some("left_lower".into()),
-        base: Some("carriage".into()),
-        ..recorded(&both)
-    };
-    assert_eq!(
-        names(&load(&options).expect("it loads")),
-        ["left_shoulder", "left_elbow"]
-    );
+    let options = ChainOptions { tip: Some("left_lower".into()), base: Some("carriage".into()), ..recorded(&both) };
+    assert_eq!(names(&load(&options).expect("it loads")), ["left_shoulder", "left_elbow"]);
     // The joints of another robot have no influence.
     assert!(load(&recorded(&["a"])).is_err());
 }
@@ -166,13 +135,8 @@ fn grippers_and_mimicking_joints_are_fixed() {
     assert_eq!(fixed("finger_1"), (0.0, FixedBecause::Gripper, true));
     // It stands at the position that the mimicked joint gives it.
     assert_eq!(fixed("finger_2"), (0.01, FixedBecause::Mimics("finger_1".into()), true));
-    let [note] = arm.warnings() else {
-        panic!("{:?}", arm.warnings())
-    };
-    assert!(
-        note.contains("finger_1 at 0 m (gripper), finger_2 at 0.01 m (mimics finger_1)"),
-        "{note}"
-    );
+    let [note] = arm.warnings() else { panic!("{:?}", arm.warnings()) };
+    assert!(note.contains("finger_1 at 0 m (gripper), finger_2 at 0.01 m (mimics finger_1)"), "{note}");
     // The fingers' frames are no tool; they are at the forearm's end.
     assert_eq!(arm.tool_frame().name, "hand");
     assert!((arm.joints()[1].inertia.mass - 8.0).abs() < 1e-12);
@@ -181,11 +145,7 @@ fn grippers_and_mimicking_joints_are_fixed() {
     assert_eq!(names(&arm), ["lift", "left_shoulder", "left_elbow", "finger_1"]);
     let warning = "joints beyond the tip that follow a moving joint of the arm, and are fixed in the model all the same: finger_2 \
                    (finger_1)";
-    assert!(
-        arm.warnings().iter().any(|text| text == warning),
-        "{:?}",
-        arm.warnings()
-    );
+    assert!(arm.warnings().iter().any(|text| text == warning), "{:?}", arm.warnings());
 }
 
 #[test]
@@ -197,10 +157,7 @@ fn locks_say_where_joints_are_fixed() {
     let arm = load(&with(&[("finger_1", 0.03), ("lift", 0.5)])).expect("it loads");
     assert_eq!(names(&arm), ["left_shoulder", "left_elbow"]);
     let open = arm.joints()[1].inertia.com.x;
-    let closed = load(&with(&[("lift", 0.5)])).expect("it loads").joints()[1]
-        .inertia
-        .com
-        .x;
+    let closed = load(&with(&[("lift", 0.5)])).expect("it loads").joints()[1].inertia.com.x;
     // Of four bodies of 2 kg, one moves by 0.03 m and another, which mimics it, by half of that.
     assert!((open - closed - (0.03 + 0.015) / 4.0).abs() < 1e-12, "{open}, {closed}");
     let message = load(&with(&[("lift", 0.5), ("lift", 0.6)])).expect_err("it is refused");
@@ -209,14 +166,8 @@ fn locks_say_where_joints_are_fixed() {
         "{message}"
     );
     for (locks, reason) in [
-        (
-            [("finger_1", 3.0)],
-            "joint \"finger_1\" is locked at 3, outside its limits 0 … 0.04",
-        ),
-        (
-            [("elbow", 0.0)],
-            "has no moving joint \"elbow\" for --lock; its moving joints are lift, ",
-        ),
+        ([("finger_1", 3.0)], "joint \"finger_1\" is locked at 3, outside its limits 0 … 0.04"),
+        ([("elbow", 0.0)], "has no moving joint \"elbow\" for --lock; its moving joints are lift, "),
         ([("left_elbow", f64::NAN)], "is locked at NaN"),
     ] {
         let message = load(&with(&locks)).expect_err("it is refused");
@@ -227,48 +178,24 @@ fn locks_say_where_joints_are_fixed() {
 #[test]
 fn links_that_are_not_there_are_refused_by_name() {
     let message = load(&tip("nowhere")).expect_err("there is no such link");
-    assert!(
-        message.contains("has no link \"nowhere\" for --tip; its links are root, "),
-        "{message}"
-    );
+    assert!(message.contains("has no link \"nowhere\" for --tip; its links are root, "), "{message}");
     let message = load(&tip("left_elbow")).expect_err("it is a joint");
-    assert!(
-        message.contains("but a joint of this name; the link that it moves is left_lower"),
-        "{message}"
-    );
-    let opposite = ChainOptions {
-        base: Some("left_lower".into()),
-        ..tip("root")
-    };
+    assert!(message.contains("but a joint of this name; the link that it moves is left_lower"), "{message}");
+    let opposite = ChainOptions { base: Some("left_lower".into()), ..tip("root") };
     let message = load(&opposite).expect_err("they are the other way round");
     assert!(message.contains("exchange --base and --tip"), "{message}");
-    let options = ChainOptions {
-        base: Some("right_upper".into()),
-        ..tip("left_lower")
-    };
+    let options = ChainOptions { base: Some("right_upper".into()), ..tip("left_lower") };
     let message = load(&options).expect_err("it is on the other arm");
-    assert!(
-        message.contains("link \"left_lower\" is not below link \"right_upper\""),
-        "{message}"
-    );
+    assert!(message.contains("link \"left_lower\" is not below link \"right_upper\""), "{message}");
 }
 
 #[test]
 fn a_floating_base_is_no_part_of_the_arm() {
-    let text = robot().replace(
-        "<joint name=\"mount\" type=\"fixed\">",
-        "<joint name=\"mount\" type=\"floating\">",
-    );
+    let text = robot().replace("<joint name=\"mount\" type=\"fixed\">", "<joint name=\"mount\" type=\"floating\">");
     let load = |options: &ChainOptions| Arm::from_urdf_chain(&text, "two.urdf", options);
     let message = load(&tip("left_lower")).expect_err("it floats").to_string();
-    assert!(
-        message.contains("joint \"mount\" is floating") && message.contains("--base column"),
-        "{message}"
-    );
-    let options = ChainOptions {
-        base: Some("column".into()),
-        ..tip("left_lower")
-    };
+    assert!(message.contains("joint \"mount\" is floating") && message.contains("--base column"), "{message}");
+    let options = ChainOptions { base: Some("column".into()), ..tip("left_lower") };
     assert_eq!(load(&options).expect("it loads").dof(), 3);
 }
 
@@ -276,23 +203,12 @@ fn a_floating_base_is_no_part_of_the_arm() {
 fn joints_that_mimic_the_arms_own_are_refused() {
     let mimics = |joint: &str, mimic: &str| {
         let at = format!("<joint name=\"{joint}\"");
-        let (before, rest) = robot()
-            .split_once(&at)
-            .map(|(a, b)| (a.to_owned(), b.to_owned()))
-            .expect("it is there");
-        format!(
-            "{before}{at}{}",
-            rest.replacen("</joint>", &format!("{mimic}</joint>"), 1)
-        )
+        let (before, rest) = robot().split_once(&at).map(|(a, b)| (a.to_owned(), b.to_owned())).expect("it is there");
+        format!("{before}{at}{}", rest.replacen("</joint>", &format!("{mimic}</joint>"), 1))
     };
-    let left = ChainOptions {
-        base: Some("carriage".into()),
-        ..recorded(&["left_shoulder", "left_elbow"])
-    };
+    let left = ChainOptions { base: Some("carriage".into()), ..recorded(&["left_shoulder", "left_elbow"]) };
     let refused = |text: &str, options: &ChainOptions| {
-        Arm::from_urdf_chain(text, "two.urdf", options)
-            .expect_err("it is refused")
-            .to_string()
+        Arm::from_urdf_chain(text, "two.urdf", options).expect_err("it is refused").to_string()
     };
     // A recorded joint of the arm, the last one or the first one.
     for (joint, of) in [("left_elbow", "left_shoulder"), ("left_shoulder", "left_elbow")] {
@@ -305,19 +221,10 @@ fn joints_that_mimic_the_arms_own_are_refused() {
         assert!(message.contains(&remedy), "{message}");
     }
     // A gripper that opens with the elbow, directly or by way of another finger.
-    let text = mimics(
-        "finger_1",
-        "<mimic joint=\"left_elbow\" multiplier=\"2\" offset=\"0.1\"/>",
-    );
+    let text = mimics("finger_1", "<mimic joint=\"left_elbow\" multiplier=\"2\" offset=\"0.1\"/>");
     let message = refused(&text, &left);
-    assert!(
-        message.contains("joint \"finger_1\" mimics \"left_elbow\", a moving joint"),
-        "{message}"
-    );
-    let locked = |name: &str| ChainOptions {
-        locks: vec![(name.into(), 0.0)],
-        ..left.clone()
-    };
+    assert!(message.contains("joint \"finger_1\" mimics \"left_elbow\", a moving joint"), "{message}");
+    let locked = |name: &str| ChainOptions { locks: vec![(name.into(), 0.0)], ..left.clone() };
     let by_way = text.replacen("<mimic joint=\"left_elbow\"", "<mimic joint=\"finger_2\"", 1);
     let by_way = by_way.replace("<mimic joint=\"finger_1\"", "<mimic joint=\"left_elbow\"");
     let message = refused(&by_way, &left);
@@ -335,9 +242,6 @@ fn joints_that_mimic_the_arms_own_are_refused() {
         "{message}"
     );
     // Some hands name a joint that is missing; they are no part of an arm that ends before them.
-    let options = ChainOptions {
-        base: left.base.clone(),
-        ..tip("left_lower")
-    };
+    let options = ChainOptions { base: left.base.clone(), ..tip("left_lower") };
     assert!(Arm::from_urdf_chain(&text, "two.urdf", &options).is_ok());
 }

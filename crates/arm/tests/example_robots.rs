@@ -38,132 +38,39 @@ const PLAIN: [(&str, usize); 23] = [
 /// The robots with an arm among other chains: base and tip of the arm, and its number of joints. The error for each
 /// robot proposes these flags.
 const NAMED: [(&str, &str, &str, usize); 27] = [
-    (
-        "alex_description/urdf/alex_nub_hands.urdf",
-        "Torso",
-        "LeftWristRollLink",
-        6,
-    ),
-    (
-        "alex_description/urdf/alex_psyonic_hands.urdf",
-        "Torso",
-        "LeftGripperYawLink",
-        7,
-    ),
-    (
-        "alex_description/urdf/alex_sake_hands.urdf",
-        "Torso",
-        "LeftWristRollLink",
-        6,
-    ),
-    (
-        "anymal_b_simple_description/robots/anymal-kinova.urdf",
-        "base",
-        "j2s6s200_link_6",
-        6,
-    ),
+    ("alex_description/urdf/alex_nub_hands.urdf", "Torso", "LeftWristRollLink", 6),
+    ("alex_description/urdf/alex_psyonic_hands.urdf", "Torso", "LeftGripperYawLink", 7),
+    ("alex_description/urdf/alex_sake_hands.urdf", "Torso", "LeftWristRollLink", 6),
+    ("anymal_b_simple_description/robots/anymal-kinova.urdf", "base", "j2s6s200_link_6", 6),
     ("b1_description/urdf/b1-z1.urdf", "base", "link06", 6),
     ("baxter_description/urdf/baxter.urdf", "base", "right_wrist", 7),
     ("centauro_description/urdf/centauro.urdf", "pelvis", "wheel_1", 6),
-    (
-        "g1_description/urdf/g1_29dof_rev_1_0.urdf",
-        "torso_link",
-        "left_wrist_yaw_link",
-        7,
-    ),
-    (
-        "g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf",
-        "torso_link",
-        "left_wrist_yaw_link",
-        7,
-    ),
+    ("g1_description/urdf/g1_29dof_rev_1_0.urdf", "torso_link", "left_wrist_yaw_link", 7),
+    ("g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", "torso_link", "left_wrist_yaw_link", 7),
     ("human_description/robots/human.urdf", "middle_thorax", "left_hand", 8),
     ("icub_description/robots/icub.urdf", "chest", "l_hand", 7),
     ("icub_description/robots/icub_reduced.urdf", "chest", "l_hand", 7),
-    (
-        "pr2_description/urdf/pr2.urdf",
-        "torso_lift_link",
-        "r_wrist_roll_link",
-        7,
-    ),
+    ("pr2_description/urdf/pr2.urdf", "torso_lift_link", "r_wrist_roll_link", 7),
     ("romeo_description/urdf/romeo.urdf", "torso", "LFinger11Link", 8),
     ("romeo_description/urdf/romeo_laas_small.urdf", "torso", "l_wrist", 7),
     ("romeo_description/urdf/romeo_small.urdf", "torso", "l_wrist", 7),
-    (
-        "simple_humanoid_description/urdf/simple_humanoid.urdf",
-        "torso",
-        "r_wrist",
-        7,
-    ),
-    (
-        "simple_humanoid_description/urdf/simple_humanoid_classical.urdf",
-        "torso",
-        "r_wrist",
-        7,
-    ),
-    (
-        "talos_data/robots/talos_full_v2.urdf",
-        "torso_2_link",
-        "arm_left_7_link",
-        7,
-    ),
-    (
-        "talos_data/robots/talos_full_v2_box.urdf",
-        "torso_2_link",
-        "arm_left_7_link",
-        7,
-    ),
-    (
-        "talos_data/robots/talos_reduced.urdf",
-        "torso_2_link",
-        "arm_left_7_link",
-        7,
-    ),
-    (
-        "talos_data/robots/talos_reduced_box.urdf",
-        "torso_2_link",
-        "arm_left_7_link",
-        7,
-    ),
-    (
-        "talos_data/robots/talos_reduced_corrected.urdf",
-        "torso_2_link",
-        "arm_left_7_link",
-        7,
-    ),
-    (
-        "tiago_description/robots/tiago.urdf",
-        "torso_lift_link",
-        "arm_7_link",
-        7,
-    ),
-    (
-        "tiago_description/robots/tiago_dual.urdf",
-        "torso_lift_link",
-        "arm_left_7_link",
-        7,
-    ),
-    (
-        "tiago_description/robots/tiago_no_hand.urdf",
-        "torso_lift_link",
-        "arm_7_link",
-        7,
-    ),
-    (
-        "tiago_pro_description/robots/tiago_pro.urdf",
-        "torso_lift_link",
-        "arm_left_7_link",
-        7,
-    ),
+    ("simple_humanoid_description/urdf/simple_humanoid.urdf", "torso", "r_wrist", 7),
+    ("simple_humanoid_description/urdf/simple_humanoid_classical.urdf", "torso", "r_wrist", 7),
+    ("talos_data/robots/talos_full_v2.urdf", "torso_2_link", "arm_left_7_link", 7),
+    ("talos_data/robots/talos_full_v2_box.urdf", "torso_2_link", "arm_left_7_link", 7),
+    ("talos_data/robots/talos_reduced.urdf", "torso_2_link", "arm_left_7_link", 7),
+    ("talos_data/robots/talos_reduced_box.urdf", "torso_2_link", "arm_left_7_link", 7),
+    ("talos_data/robots/talos_reduced_corrected.urdf", "torso_2_link", "arm_left_7_link", 7),
+    ("tiago_description/robots/tiago.urdf", "torso_lift_link", "arm_7_link", 7),
+    ("tiago_description/robots/tiago_dual.urdf", "torso_lift_link", "arm_left_7_link", 7),
+    ("tiago_description/robots/tiago_no_hand.urdf", "torso_lift_link", "arm_7_link", 7),
+    ("tiago_pro_description/robots/tiago_pro.urdf", "torso_lift_link", "arm_left_7_link", 7),
 ];
 
 /// The robots without an arm, with a part of the error.
 const REFUSED: [(&str, &str); 19] = [
     ("a1_description/urdf/a1.urdf", "with 4 ends"),
-    (
-        "alexander_description/urdf/alexander_v1.lowerBodyOnly.urdf",
-        "with 3 ends",
-    ),
+    ("alexander_description/urdf/alexander_v1.lowerBodyOnly.urdf", "with 3 ends"),
     ("allegro_hand_description/urdf/allegro_left_hand.urdf", "with 4 ends"),
     ("allegro_hand_description/urdf/allegro_right_hand.urdf", "with 4 ends"),
     ("anymal_b_simple_description/robots/anymal.urdf", "with 4 ends"),
@@ -213,12 +120,7 @@ fn all_example_robots_load_or_say_why_not() {
     });
     let mut found = BTreeMap::new();
     urdfs(&folder, &mut found);
-    assert_eq!(
-        found.len(),
-        PLAIN.len() + NAMED.len() + REFUSED.len(),
-        "in {}",
-        folder.display()
-    );
+    assert_eq!(found.len(), PLAIN.len() + NAMED.len() + REFUSED.len(), "in {}", folder.display());
     let load = |key: &str, options: &ChainOptions| {
         let path = found.get(key).unwrap_or_else(|| panic!("{key} is missing"));
         let text = std::fs::read_to_string(path).expect("it can be read");
@@ -234,11 +136,7 @@ fn all_example_robots_load_or_say_why_not() {
         let error = load(key, &plain).expect_err(key);
         let flags = format!("--base {base} --tip {tip} ({joints} joints: ");
         assert!(error.contains(&flags), "{flags} is not in {error}");
-        let options = ChainOptions {
-            base: Some(base.into()),
-            tip: Some(tip.into()),
-            ..ChainOptions::default()
-        };
+        let options = ChainOptions { base: Some(base.into()), tip: Some(tip.into()), ..ChainOptions::default() };
         let arm = load(key, &options).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!((arm.dof(), arm.base_link()), (joints, base), "{key}");
         check_torques(&arm);
@@ -263,11 +161,6 @@ fn check_torques(arm: &Arm) {
             arm.potential_energy(&mut workspace, &moved)
         };
         let slope = (at(step) - at(-step)) / (2.0 * step);
-        assert!(
-            (slope - tau[joint]).abs() < 1e-5 * (1.0 + slope.abs()),
-            "{}: {slope}, {}",
-            arm.name(),
-            tau[joint]
-        );
+        assert!((slope - tau[joint]).abs() < 1e-5 * (1.0 + slope.abs()), "{}: {slope}, {}", arm.name(), tau[joint]);
     }
 }

@@ -24,17 +24,11 @@ impl Random {
 
 fn for_each_state(mut law: impl FnMut(&Arm, &mut Workspace, &mut Random)) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for urdf in [
-        "../../assets/puma560.urdf",
-        "tests/robots/seven_axis.urdf",
-        "tests/robots/prismatic.urdf",
-    ] {
+    for urdf in ["../../assets/puma560.urdf", "tests/robots/seven_axis.urdf", "tests/robots/prismatic.urdf"] {
         let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
         let rotors: Vec<f64> = (0..arm.dof()).map(|i| 0.1 + 0.05 * i as f64).collect();
         // Gravity in a general direction, and rotors, so that every term contributes.
-        let arm = arm
-            .with_gravity(Vector3::new(1.2, -0.7, -9.6))
-            .with_rotor_inertias(&rotors);
+        let arm = arm.with_gravity(Vector3::new(1.2, -0.7, -9.6)).with_rotor_inertias(&rotors);
         let mut workspace = Workspace::new(&arm);
         let mut random = Random(7);
         for _ in 0..100 {
@@ -114,10 +108,7 @@ fn coriolis_forces_do_no_work_beyond_the_change_of_inertia() {
         let v = DVector::from_column_slice(&qd);
         let power: f64 = (0..n).map(|i| qd[i] * (bias[i] - gravity[i])).sum();
         let change = 0.5 * v.dot(&(m_dot * &v));
-        assert!(
-            (power - change).abs() <= 1e-6 * (1.0 + power.abs()),
-            "{power} is not {change}"
-        );
+        assert!((power - change).abs() <= 1e-6 * (1.0 + power.abs()), "{power} is not {change}");
     });
 }
 

@@ -18,10 +18,8 @@ fn check(robot: &str, urdf: &str) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
     let bytes = std::fs::read(folder.join(format!("tests/pinocchio/{robot}.bin"))).expect("the reference is there");
-    let values: Vec<f64> = bytes
-        .chunks_exact(8)
-        .map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes")))
-        .collect();
+    let values: Vec<f64> =
+        bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes"))).collect();
     let n = arm.dof();
     let width = 4 * n + 12 + 6 + 4 * n + n * (n + 1) / 2 + 2 * n;
     assert_eq!(values.len(), 1000 * width);
@@ -41,10 +39,7 @@ fn check(robot: &str, urdf: &str) {
             assert_eq!(ours.len(), theirs.len());
             let scale = theirs.iter().fold(1e-3, |m: f64, x| m.max(x.abs()));
             let error = ours.iter().zip(theirs).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / scale;
-            assert!(
-                error <= TOLERANCE,
-                "{robot}, state {state}: {what} is off by {error:e}\n{ours:?}\n{theirs:?}"
-            );
+            assert!(error <= TOLERANCE, "{robot}, state {state}: {what} is off by {error:e}\n{ours:?}\n{theirs:?}");
             match worst.iter_mut().find(|(name, _)| *name == what) {
                 Some((_, e)) => *e = e.max(error),
                 None => worst.push((what, error)),
@@ -70,10 +65,7 @@ fn check(robot: &str, urdf: &str) {
         compare("forward dynamics", &tau_out, take(&mut row, n));
 
         arm.mass_matrix(&mut workspace, q, &mut mass_matrix);
-        let lower: Vec<f64> = (0..n)
-            .flat_map(|i| (0..=i).map(move |j| (i, j)))
-            .map(|ij| mass_matrix[ij])
-            .collect();
+        let lower: Vec<f64> = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|ij| mass_matrix[ij]).collect();
         compare("mass matrix", &lower, take(&mut row, lower.len()));
 
         arm.torque_regressor(&mut workspace, q, qd, qdd, &mut regressor);
@@ -95,10 +87,8 @@ fn check_derivatives(robot: &str, urdf: &str) {
     let arm = Arm::from_urdf(folder.join(urdf)).expect("the robot loads");
     let file = folder.join(format!("tests/pinocchio/{robot}_derivatives.bin"));
     let bytes = std::fs::read(file).expect("the reference is there");
-    let values: Vec<f64> = bytes
-        .chunks_exact(8)
-        .map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes")))
-        .collect();
+    let values: Vec<f64> =
+        bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes"))).collect();
     let n = arm.dof();
     let width = 3 * n + 2 * n * n;
     assert_eq!(values.len(), 50 * width);
@@ -111,10 +101,7 @@ fn check_derivatives(robot: &str, urdf: &str) {
         for (what, ours) in ["by position", "by velocity"].iter().zip(&ours) {
             let theirs = DMatrix::from_row_slice(n, n, take(&mut row, n * n));
             let error = (ours - &theirs).amax() / theirs.amax().max(1e-3);
-            assert!(
-                error <= TOLERANCE,
-                "{robot}, state {state}: {what} is off by {error:e}\n{ours}{theirs}"
-            );
+            assert!(error <= TOLERANCE, "{robot}, state {state}: {what} is off by {error:e}\n{ours}{theirs}");
         }
     }
 }

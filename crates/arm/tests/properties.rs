@@ -14,14 +14,7 @@ use random_arm::{Case, arm, cases, config, urdf};
 fn is_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
     let scale = b.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
     for (x, y) in a.iter().zip(b) {
-        prop_assert!(
-            (x - y).abs() <= tolerance * scale,
-            "{}: {:?} is not {:?} (to {})",
-            what,
-            a,
-            b,
-            tolerance
-        );
+        prop_assert!((x - y).abs() <= tolerance * scale, "{}: {:?} is not {:?} (to {})", what, a, b, tolerance);
     }
     Ok(())
 }

@@ -24,12 +24,7 @@ fn robots_of_the_shared_recordings_load() {
     assert!(!found.is_empty(), "there are no robots in {}", shared.display());
     for path in &found {
         let arm = Arm::from_urdf(path).unwrap_or_else(|error| panic!("{error}"));
-        assert!(
-            (1..=10).contains(&arm.dof()),
-            "{}: {} joints",
-            path.display(),
-            arm.dof()
-        );
+        assert!((1..=10).contains(&arm.dof()), "{}: {} joints", path.display(), arm.dof());
     }
     println!("{} robots load", found.len());
 }

@@ -42,11 +42,7 @@ fn a_misspelt_name_is_refused_with_the_one_that_is_meant() {
             "<Maas value=\"0.5\"/>\n",
             "r.urdf:4: <inertial> of link \"upper\" has an unknown element <Maas>; did you mean <mass>?",
         ),
-        (
-            "<axis xyz",
-            "<axes xyz",
-            "r.urdf:7: joint \"j1\" has an unknown element <axes>; did you mean <axis>?",
-        ),
+        ("<axis xyz", "<axes xyz", "r.urdf:7: joint \"j1\" has an unknown element <axes>; did you mean <axis>?"),
         (
             "<link name=\"flange\"/>",
             "<lnik name=\"flange\"/>",
@@ -101,26 +97,14 @@ fn numbers_that_are_missing_are_counted() {
             "xyz=\"1 0\"",
             "r.urdf:7: xyz needs three numbers, and has two (1 0); give three in SI units",
         ),
-        (
-            "value=\"0.5\"/>\n",
-            "value=\"\"/>\n",
-            "r.urdf:4: value needs one number, and has none; give one in SI units",
-        ),
-        (
-            "xyz=\"0 0 1\"",
-            "xyz=\"0, 0 1\"",
-            "r.urdf:7: 0, in xyz=\"0, 0 1\" is not a number; give one in SI units",
-        ),
+        ("value=\"0.5\"/>\n", "value=\"\"/>\n", "r.urdf:4: value needs one number, and has none; give one in SI units"),
+        ("xyz=\"0 0 1\"", "xyz=\"0, 0 1\"", "r.urdf:7: 0, in xyz=\"0, 0 1\" is not a number; give one in SI units"),
         (
             " izz=\".005\"/></inertial></link>\n<joint",
             "/></inertial></link>\n<joint",
             "r.urdf:5: <inertia> has no attribute izz; add it",
         ),
-        (
-            "<mass value=\"0.5\"/>\n",
-            "\n",
-            "r.urdf:3: <inertial> has no element <mass>; add it",
-        ),
+        ("<mass value=\"0.5\"/>\n", "\n", "r.urdf:3: <inertial> has no element <mass>; add it"),
     ] {
         assert_eq!(refused(from, to), message);
     }
@@ -148,14 +132,10 @@ fn extensions_are_no_misspellings() {
             "</joint>",
             "<calibration rising=\"0\"/><safety_controller k_velocity=\"1\"/><drake:rotor_inertia value=\"1\"/>",
         ),
-        PENDULUM.replace(
-            "effort=\"1\"",
-            "effort=\"1\" acceleration=\"1\" jerk=\"1\" gear_velocity=\"1\" current=\"1\"",
-        ),
-        PENDULUM.replace(
-            "friction=\"1\"",
-            "friction=\"1\" K=\"1\" D=\"1\" mu_coulomb=\"1\" mu_viscous=\"1\" source=\"a\"",
-        ),
+        PENDULUM
+            .replace("effort=\"1\"", "effort=\"1\" acceleration=\"1\" jerk=\"1\" gear_velocity=\"1\" current=\"1\""),
+        PENDULUM
+            .replace("friction=\"1\"", "friction=\"1\" K=\"1\" D=\"1\" mu_coulomb=\"1\" mu_viscous=\"1\" source=\"a\""),
         PENDULUM.replace("name=\"lower\"", "name=\"lower\" type=\"a\" iyx=\"0\""),
         // A full matrix has all names that iyx could mean.
         PENDULUM.replace("iyy=", "iyx=\"0\" iyy="),
@@ -178,19 +158,13 @@ fn a_moving_link_without_mass_is_noted() {
         note,
         "link \"lower\" (line 9), which j2 moves, has no mass and no inertia; add its <inertial>, unless it stands for no body"
     );
-    let mass = line
-        .split("<mass")
-        .nth(1)
-        .and_then(|rest| rest.split("/>").next())
-        .expect("it is there");
+    let mass = line.split("<mass").nth(1).and_then(|rest| rest.split("/>").next()).expect("it is there");
     let note = bare(line, &line.replace(mass, " value=\"0\""));
     let rest = "has an inertia but no mass, which no body has; correct its <mass>, unless it stands for a rotor";
     assert_eq!(note, format!("link \"lower\" (line 9), which j2 moves, {rest}"));
     // What a fixed joint attaches to it is a part of it.
     let moved = line.replace("\"lower\"", "\"flange\"");
-    let text = PENDULUM
-        .replacen("<link name=\"flange\"/>", &moved, 1)
-        .replacen(line, "<link name=\"lower\"/>", 1);
+    let text = PENDULUM.replacen("<link name=\"flange\"/>", &moved, 1).replacen(line, "<link name=\"lower\"/>", 1);
     let arm = load(&text).expect("it loads");
     assert!(arm.warnings().is_empty(), "{:?}", arm.warnings());
 }

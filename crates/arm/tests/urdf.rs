@@ -19,9 +19,7 @@ fn robot(parts: &[String]) -> String {
 }
 
 fn refusal(text: &str) -> String {
-    Arm::from_urdf_text(text, "robot.urdf")
-        .expect_err("this robot is refused")
-        .to_string()
+    Arm::from_urdf_text(text, "robot.urdf").expect_err("this robot is refused").to_string()
 }
 
 /// Checks that the robot of `parts` is refused with a message that holds each of `said`.
@@ -60,18 +58,12 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     let two = |kind: &str| robot(&[link("b", ""), link("a", LINK), joint("hinge", kind, "b", "a")]);
     for kind in ["floating", "planar", "spherical"] {
         let message = refusal(&two(kind));
-        assert!(
-            message.contains("robot.urdf:4: joint \"hinge\"") && message.contains(kind),
-            "{message}"
-        );
+        assert!(message.contains("robot.urdf:4: joint \"hinge\"") && message.contains(kind), "{message}");
     }
     let [b, a, c] = [link("b", ""), link("a", LINK), link("c", LINK)];
     let three = |joints: &[String]| [&[b.clone(), a.clone(), c.clone()], joints].concat();
     refused(
-        &three(&[
-            joint("left", "revolute", "b", "a"),
-            joint("right", "revolute", "b", "c"),
-        ]),
+        &three(&[joint("left", "revolute", "b", "a"), joint("right", "revolute", "b", "c")]),
         &["with 2 ends", "--tip a", "--tip c"],
     );
     refused(
@@ -91,23 +83,14 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     );
     refused(&three(&[joint("j", "revolute", "b", "a")]), &["link \"c\""]);
     refused(
-        &[
-            b.clone(),
-            a.clone(),
-            joint("j1", "revolute", "b", "a"),
-            joint("j2", "revolute", "a", "b"),
-        ],
+        &[b.clone(), a.clone(), joint("j1", "revolute", "b", "a"), joint("j2", "revolute", "a", "b")],
         &["loop; delete the joint that closes it: \"j2\" if link \"b\" is the base"],
     );
     refused(&[b, joint("j", "revolute", "b", "nowhere")], &["\"nowhere\""]);
 
     // A robot in which every joint mimics another has no moving joint.
     let mimic = two("revolute").replace("</joint>", "<mimic joint=\"hinge\"/></joint>");
-    assert!(
-        refusal(&mimic).contains("has no joint that moves"),
-        "{}",
-        refusal(&mimic)
-    );
+    assert!(refusal(&mimic).contains("has no joint that moves"), "{}", refusal(&mimic));
 
     assert!(refusal(&two("fixed")).contains("has no joint that moves"));
     assert!(refusal("not xml at all").contains("not a URDF"));
@@ -116,10 +99,7 @@ fn what_is_no_serial_arm_is_refused_by_name() {
     let message = refusal(&robot(&["<xacro:include filename=\"a\"/>\n".into()]));
     assert!(message.contains("robot.urdf:2: is xacro"), "{message}");
     let message = refusal(&two("revolute").replace("value=\"2\"", "value=\"two\""));
-    assert!(
-        message.contains("robot.urdf:3: value=\"two\" is not a number"),
-        "{message}"
-    );
+    assert!(message.contains("robot.urdf:3: value=\"two\" is not a number"), "{message}");
 }
 
 #[test]
@@ -153,20 +133,14 @@ fn what_does_not_parse_has_its_line() {
         joint("j", "revolute", "b", "a").replace("<parent link=\"b\"/>", "<parent/>"),
     ]);
     let message = refusal(&text);
-    assert!(
-        message == "robot.urdf:4: <parent> has no attribute link; add it",
-        "{message}"
-    );
+    assert!(message == "robot.urdf:4: <parent> has no attribute link; add it", "{message}");
     let message = refusal(&text.replace("<parent/>", ""));
     assert_eq!(message, "robot.urdf:4: joint \"j\" has no element <parent>; add it");
     let message = refusal("<robot name=\"r\">\n<link name=\"a\">\n</robot>");
     assert!(message.starts_with("robot.urdf:3: is not well-formed XML"), "{message}");
     for (text, format) in [
         ("<mujoco model=\"a\"><worldbody/></mujoco>", "is MJCF"),
-        (
-            "<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"/>",
-            "robot.urdf:2: is SDF",
-        ),
+        ("<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"/>", "robot.urdf:2: is SDF"),
         ("<html/>", "its first element is <html>"),
     ] {
         assert!(refusal(text).contains(format), "{}", refusal(text));
@@ -177,15 +151,9 @@ fn what_does_not_parse_has_its_line() {
 fn what_no_body_has_is_refused_by_name() {
     let with = |inertial: &str| robot(&[link("b", ""), link("arm", inertial), joint("j", "revolute", "b", "arm")]);
     let message = refusal(&with(""));
-    assert!(
-        message.contains("robot \"r\" has no moving link with a mass or an inertia"),
-        "{message}"
-    );
+    assert!(message.contains("robot \"r\" has no moving link with a mass or an inertia"), "{message}");
     let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"-2\"")));
-    assert!(
-        message.contains("robot.urdf:3: link \"arm\" has the mass -2 kg"),
-        "{message}"
-    );
+    assert!(message.contains("robot.urdf:3: link \"arm\" has the mass -2 kg"), "{message}");
     let message = refusal(&with(&LINK.replace("value=\"2\"", "value=\"nan\"")));
     assert!(message.contains("not finite"), "{message}");
     let message = refusal(&with(&LINK.replace("izz=\".1\"", "izz=\"-.1\"")));
@@ -221,9 +189,7 @@ fn names_with_control_characters_are_refused() {
 #[test]
 fn a_tensor_that_breaks_the_triangle_inequality_is_warned_of() {
     let arm = Arm::from_urdf(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/puma560.urdf")).expect("it loads");
-    let [warning] = arm.warnings() else {
-        panic!("{:?}", arm.warnings())
-    };
+    let [warning] = arm.warnings() else { panic!("{:?}", arm.warnings()) };
     assert!(warning.contains("link3"), "{warning}");
     assert_eq!(arm.dof(), 6);
     assert_eq!(arm.joints()[1].limits.effort, 186.4);
@@ -234,15 +200,9 @@ fn a_tensor_that_breaks_the_triangle_inequality_is_warned_of() {
 fn elements_that_are_nested_without_end_are_refused() {
     let deep = |levels: usize| {
         let text = "<robot name=\"r\">\n".to_owned() + &"<a>".repeat(levels) + &"</a>".repeat(levels) + "</robot>";
-        Arm::from_urdf_text(&text, "deep.urdf")
-            .expect_err("it is no arm")
-            .to_string()
+        Arm::from_urdf_text(&text, "deep.urdf").expect_err("it is no arm").to_string()
     };
-    assert!(
-        deep(20_000).starts_with("deep.urdf:2: has elements in each other 64 deep"),
-        "{}",
-        deep(20_000)
-    );
+    assert!(deep(20_000).starts_with("deep.urdf:2: has elements in each other 64 deep"), "{}", deep(20_000));
     assert!(deep(20).contains("no links"), "{}", deep(20));
 }
 
@@ -251,16 +211,9 @@ fn elements_that_are_nested_without_end_are_refused() {
 fn entities_are_not_expanded() {
     let entities = |definitions: &str| {
         let text = format!("<!DOCTYPE robot [{definitions}]>\n<robot name=\"r\"><link name=\"a\"/><x>&e9;</x></robot>");
-        Arm::from_urdf_text(&text, "e.urdf")
-            .expect_err("it is no arm")
-            .to_string()
+        Arm::from_urdf_text(&text, "e.urdf").expect_err("it is no arm").to_string()
     };
-    let definition = |k: usize| {
-        format!(
-            "<!ENTITY e{k} \"{}\">",
-            format!("&e{};", k.saturating_sub(1)).repeat(10)
-        )
-    };
+    let definition = |k: usize| format!("<!ENTITY e{k} \"{}\">", format!("&e{};", k.saturating_sub(1)).repeat(10));
     let growing: String = (1..10).map(definition).collect();
     let message = entities(&format!("<!ENTITY e0 \"lol\">{growing}"));
     assert!(message.contains("e.urdf"), "{message}");

@@ -17,11 +17,7 @@ fn seven() -> Arm {
     let mut text = "<robot name=\"seven\"><link name=\"link0\"/>".to_owned();
     for joint in 1..=7 {
         let size = 4.5 - 0.5 * f64::from(joint);
-        let turn = if joint % 2 == 1 {
-            0.0
-        } else {
-            TAU / 4.0 * if joint % 4 == 0 { 1.0 } else { -1.0 }
-        };
+        let turn = if joint % 2 == 1 { 0.0 } else { TAU / 4.0 * if joint % 4 == 0 { 1.0 } else { -1.0 } };
         let _ = write!(
             text,
             "<link name=\"link{joint}\"><inertial><origin xyz=\"0.01 {} 0.05\"/><mass value=\"{size}\"/>\
@@ -48,28 +44,16 @@ fn injected(motion: &mut Motion, tau: &mut [f64]) {
 
 fn bench(bencher: Bencher, seconds: f64) {
     let arm = seven();
-    let recordings: Vec<RegularRecording> = (0..4)
-        .map(|variant| regular(&recorded(&arm, variant, seconds, &injected)))
-        .collect();
+    let recordings: Vec<RegularRecording> =
+        (0..4).map(|variant| regular(&recorded(&arm, variant, seconds, &injected))).collect();
     let inputs: Vec<Input<'_>> = ["a", "b", "c", "d"]
         .into_iter()
         .zip(&recordings)
-        .map(|(name, recording)| Input {
-            name,
-            recording,
-            held_out: name == "d",
-            before: false,
-        })
+        .map(|(name, recording)| Input { name, recording, held_out: name == "d", before: false })
         .collect();
     bencher.bench_local(|| {
         let diagnosis = diagnose(&arm, &inputs, &Options::default(), &|_| {}).expect("it is diagnosed");
-        assert!(
-            diagnosis
-                .report
-                .findings
-                .iter()
-                .any(|finding| finding.effect == "spring")
-        );
+        assert!(diagnosis.report.findings.iter().any(|finding| finding.effect == "spring"));
         diagnosis
     });
 }

@@ -27,12 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let inputs: Vec<Input<'_>> = recordings
         .iter()
-        .map(|(name, recording, held_out)| Input {
-            name,
-            recording,
-            held_out: *held_out,
-            before: false,
-        })
+        .map(|(name, recording, held_out)| Input { name, recording, held_out: *held_out, before: false })
         .collect();
     let diagnosis = diagnose(&arm, &inputs, &Options::default(), &|_| ())?;
     for remark in &diagnosis.remarks {

@@ -37,32 +37,22 @@ struct Case {
 impl Case {
     fn read(folder: &Path, truth: &Path) -> Result<Self, Box<dyn Error>> {
         let arm = Arm::from_urdf(folder.join("robot.urdf"))?;
-        let mut files: Vec<PathBuf> = std::fs::read_dir(folder)?
-            .map(|entry| Ok(entry?.path()))
-            .collect::<Result<_, std::io::Error>>()?;
+        let mut files: Vec<PathBuf> =
+            std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_, std::io::Error>>()?;
         files.retain(|file| file.extension().is_some_and(|extension| extension == "csv"));
         files.sort();
         let recordings = files
             .iter()
             .map(|file| Ok((support::read(&arm, file)?, file.ends_with("held_out.csv"))))
             .collect::<Result<_, Box<dyn Error>>>()?;
-        Ok(Self {
-            arm,
-            recordings,
-            truth: serde_json::from_reader(File::open(truth)?)?,
-        })
+        Ok(Self { arm, recordings, truth: serde_json::from_reader(File::open(truth)?)? })
     }
 
     fn tried(&self, options: &Options) -> Result<Tried, Box<dyn Error>> {
         let inputs: Vec<Input<'_>> = self
             .recordings
             .iter()
-            .map(|(recording, held_out)| Input {
-                name: "recording",
-                recording,
-                held_out: *held_out,
-                before: false,
-            })
+            .map(|(recording, held_out)| Input { name: "recording", recording, held_out: *held_out, before: false })
             .collect();
         let report = diagnose(&self.arm, &inputs, options, &|_| ())?.report;
         Ok(Tried {
@@ -87,19 +77,13 @@ struct Outcome {
 
 impl Outcome {
     fn of(cases: &[Case], thresholds: &Thresholds) -> Result<Self, Box<dyn Error>> {
-        let options = Options {
-            thresholds: thresholds.clone(),
-            ..Options::default()
-        };
+        let options = Options { thresholds: thresholds.clone(), ..Options::default() };
         let tried = cases
             .par_iter()
             .map(|case| case.tried(&options).map_err(|error| error.to_string()))
             .collect::<Result<Vec<Tried>, String>>()?;
         let count = score(&tried).plain;
-        Ok(Self {
-            macro_f1: count.macro_f1,
-            false_names: count.false_in_all(),
-        })
+        Ok(Self { macro_f1: count.macro_f1, false_names: count.false_in_all() })
     }
 }
 
@@ -166,10 +150,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if pairs.is_empty() || !rest.is_empty() {
         return Err("usage: [--page PAGE.md] CASE TRUTH.json [CASE TRUTH.json …]".into());
     }
-    let cases: Vec<Case> = pairs
-        .iter()
-        .map(|[folder, truth]| Case::read(folder, truth))
-        .collect::<Result<_, _>>()?;
+    let cases: Vec<Case> = pairs.iter().map(|[folder, truth]| Case::read(folder, truth)).collect::<Result<_, _>>()?;
     let variation = variation(&cases)?;
     if let Some(page) = page {
         write_into(&page, &variation)?;

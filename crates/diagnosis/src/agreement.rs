@@ -100,11 +100,7 @@ pub fn agreement(
 /// [`DiagnosisError`], if there is nothing to fit or a recording does not fit the arm.
 pub fn searched(arm: &Arm, inputs: &[Input<'_>], known: &[Effect], other: &Agreement) -> Result<f64, DiagnosisError> {
     check(arm, inputs, other.cutoff)?;
-    let options = Options {
-        cutoff: Some(other.cutoff),
-        known: known.to_vec(),
-        ..Options::default()
-    };
+    let options = Options { cutoff: Some(other.cutoff), known: known.to_vec(), ..Options::default() };
     let mut study =
         Study::new(Data::before_a_correction(arm, inputs, &options, true)?, &options).with_any_own_load(&options);
     let selected = plan::search(&mut study, &|_| ());
@@ -124,9 +120,7 @@ fn found(study: &Study, products: &Products, selected: &Selection) -> Agreement 
     let size = |joint: usize| 0.5 * products.evidence[joint] * variances[joint].ln();
     Agreement {
         misfit: selected.score - joints().map(size).sum::<f64>(),
-        misfit_of: joints()
-            .map(|joint| products.joint_loss(joint, selected.fit.rss[joint]) - size(joint))
-            .collect(),
+        misfit_of: joints().map(|joint| products.joint_loss(joint, selected.fit.rss[joint]) - size(joint)).collect(),
         unexplained: joints()
             .map(|joint| selected.fit.rss[joint] / (products.count[joint].max(1.0) * variances[joint]))
             .collect(),

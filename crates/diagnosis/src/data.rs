@@ -108,9 +108,8 @@ impl Data {
         let by_model = reading == Reading::Settled;
         let derivatives = !matches!(reading, Reading::Weighed { derivatives: false });
         let chunks = motions.chunks.par_iter();
-        let rigid: Vec<rigid::Rigid> = chunks
-            .map(|chunk| rigid::Rigid::with_derivatives(arm, &nominal, &offset, chunk, derivatives))
-            .collect();
+        let rigid: Vec<rigid::Rigid> =
+            chunks.map(|chunk| rigid::Rigid::with_derivatives(arm, &nominal, &offset, chunk, derivatives)).collect();
         let mut scales = measure::scales(&motions, torque);
         known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);
         for (chunk, recorded) in motions.chunks.iter_mut().zip(&recorded) {
@@ -137,23 +136,13 @@ impl Data {
             let because = why.clause();
             match not_diagnosed.iter_mut().find(|group| group.because == because) {
                 Some(group) => group.joints.extend(names(&[joint])),
-                None => not_diagnosed.push(NotDiagnosed {
-                    joints: names(&[joint]),
-                    because,
-                }),
+                None => not_diagnosed.push(NotDiagnosed { joints: names(&[joint]), because }),
             }
         }
-        let weightless = if by_model {
-            gravity::without(&motions, &rigid, &scales, arm.gravity())
-        } else {
-            Vec::new()
-        };
+        let weightless = if by_model { gravity::without(&motions, &rigid, &scales, arm.gravity()) } else { Vec::new() };
         if !weightless.is_empty() {
             weightless.iter().for_each(|&joint| scales.torque[joint] = 0.0);
-            not_diagnosed.push(NotDiagnosed {
-                joints: names(&weightless),
-                because: gravity::CLAUSE.to_owned(),
-            });
+            not_diagnosed.push(NotDiagnosed { joints: names(&weightless), because: gravity::CLAUSE.to_owned() });
         }
         let fitted: Vec<bool> = motions.sources.iter().map(|source| !source.held_out).collect();
         let noise = measure::noise(&motions, &rigid, &fitted);
@@ -208,9 +197,7 @@ impl Data {
     /// (N m or N).
     pub fn known_dry_at(&self, joint: usize, row: usize) -> [f64; 2] {
         let known = self.known_dry.as_ref();
-        known.map_or([0.0; 2], |[subtracted, holds]| {
-            [subtracted[joint][row], holds[joint][row].abs()]
-        })
+        known.map_or([0.0; 2], |[subtracted, holds]| [subtracted[joint][row], holds[joint][row].abs()])
     }
 
     /// A torque (N m or N) as a share of the typical torque of `joint`.
@@ -222,9 +209,7 @@ impl Data {
     pub fn contact_share(&self, windows: &[[f64; 2]]) -> Option<(usize, f64)> {
         let shares = measure::spans(&self.motions).into_iter().map(|spans| {
             let covered = |&(from, to): &(f64, f64)| -> f64 {
-                let inside = windows
-                    .iter()
-                    .map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
+                let inside = windows.iter().map(|&[start, end]| (end.min(to) - start.max(from)).max(0.0));
                 inside.sum()
             };
             let length: f64 = spans.iter().map(|(from, to)| to - from).sum();
@@ -277,9 +262,7 @@ impl Data {
 fn on_rows(motions: &Motions, torque: impl Fn(usize, &Chunk, usize) -> Vec<f64>) -> Vec<Vec<f64>> {
     let of = |joint: usize| {
         let chunks = motions.chunks.iter().enumerate();
-        chunks
-            .flat_map(|(k, chunk)| chunk.filter(&torque(k, chunk, joint)))
-            .collect()
+        chunks.flat_map(|(k, chunk)| chunk.filter(&torque(k, chunk, joint))).collect()
     };
     (0..motions.dof).map(of).collect()
 }

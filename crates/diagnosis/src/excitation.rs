@@ -226,8 +226,6 @@ fn shrunk(
             series.shrink(&mut coefficients, joint, (1.0 / strongest).clamp(0.8, 0.998));
         }
     }
-    let centre: Vec<f64> = (0..arm.dof())
-        .map(|joint| series.centre(&coefficients, joint))
-        .collect();
+    let centre: Vec<f64> = (0..arm.dof()).map(|joint| series.centre(&coefficients, joint)).collect();
     Err(allowed.too_weak(arm, &mut workspace, &centre))
 }

@@ -177,20 +177,14 @@ mod tests {
     fn lanes_have_the_bits_of_single_columns() {
         for rows in [1, 3, 4, 7, 21] {
             let columns: [Vec<f64>; LANES] = std::array::from_fn(|lane| column(lane, rows));
-            let lanes: Vec<Lanes> = (0..rows)
-                .map(|k| std::array::from_fn(|lane| columns[lane][k]))
-                .collect();
+            let lanes: Vec<Lanes> = (0..rows).map(|k| std::array::from_fn(|lane| columns[lane][k])).collect();
             let others: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
             let a = column(40, rows);
             let expected: Vec<f64> = others.iter().map(|other| dot(&a, other)).collect();
             assert_eq!(dots_of(&[&a], &lanes)[0].to_vec(), expected);
             assert_eq!(dots_with(&a, &others[..7]), expected[..7]);
             let lower: Vec<Vec<f64>> = (0..rows)
-                .map(|i| {
-                    (0..=i)
-                        .map(|k| if i == k { 2.0 } else { ((i * 5 + k) as f64).cos() })
-                        .collect()
-                })
+                .map(|i| (0..=i).map(|k| if i == k { 2.0 } else { ((i * 5 + k) as f64).cos() }).collect())
                 .collect();
             let matrix = nalgebra::DMatrix::from_fn(rows, rows, |i, k| if k <= i { lower[i][k] } else { 0.0 });
             let (mut by_rows, mut by_columns) = (lanes.clone(), lanes.clone());

@@ -57,13 +57,7 @@ impl Look {
         progress: &dyn Fn(Step<'_>),
     ) -> Result<Self, DiagnosisError> {
         let removed = format!("{:.1} ms", 1e3 * lag.seconds);
-        trace.step([(
-            Action::Lag,
-            removed,
-            None,
-            "the residuals of all joints show this lag",
-            0.0,
-        )]);
+        trace.step([(Action::Lag, removed, None, "the residuals of all joints show this lag", 0.0)]);
         Self::within(arm, inputs, options, (None, trace), progress)
     }
 
@@ -114,10 +108,7 @@ impl Look {
         {
             return Ok(self);
         }
-        let options = Options {
-            cutoff: Some(slower),
-            ..options.clone()
-        };
+        let options = Options { cutoff: Some(slower), ..options.clone() };
         let again = |step: Step<'_>| {
             let doing = format!("slower filter: {}", step.doing);
             progress(Step::new(0.78 + 0.02 * step.done, &doing));
@@ -147,9 +138,7 @@ impl Look {
     /// The slower cut-off (Hz): a part of this one, sufficient for delays, springs and gaps, and for the motion.
     fn slower(&self) -> f64 {
         let motions = &self.last.study.data.motions;
-        (SLOWER_FILTER * motions.cutoff)
-            .max(LEAST_FOR_DYNAMICS)
-            .max(LEAST_CUTOFF_PERIODS * motions.usual_tempo())
+        (SLOWER_FILTER * motions.cutoff).max(LEAST_FOR_DYNAMICS).max(LEAST_CUTOFF_PERIODS * motions.usual_tempo())
     }
 
     /// The joints whose residual is unexplained.
@@ -173,12 +162,7 @@ impl Look {
         Outcome {
             findings: self.conclusion.findings.iter().map(|(finding, _)| finding).collect(),
             unexplained: &self.conclusion.unexplained,
-            errors: self
-                .conclusion
-                .fit
-                .iter()
-                .map(|(joint, fit)| (joint.as_str(), fit.error()))
-                .collect(),
+            errors: self.conclusion.fit.iter().map(|(joint, fit)| (joint.as_str(), fit.error())).collect(),
         }
     }
 }
@@ -205,24 +189,15 @@ impl Outcome<'_> {
         let closed = || first.unexplained.iter().filter(|open| !self.is_open(&open.joint));
         let largest = closed().max_by(|a, b| a.share.total_cmp(&b.share))?;
         let share = |finding: &Finding| finding.share_by_joint.get(&largest.joint).copied().unwrap_or(0.0);
-        let mut new = self
-            .findings
-            .iter()
-            .filter(|finding| is_certain(finding) && !first.names(finding));
+        let mut new = self.findings.iter().filter(|finding| is_certain(finding) && !first.names(finding));
         let reason = new.find(|finding| share(finding) >= OF_THE_UNEXPLAINED * largest.share)?;
         let is_elsewhere = |finding: &&&Finding| !finding.joint.as_ref().is_some_and(|joint| first.is_open(joint));
-        let mut kept = first
-            .findings
-            .iter()
-            .filter(|finding| is_certain(finding))
-            .filter(is_elsewhere);
+        let mut kept = first.findings.iter().filter(|finding| is_certain(finding)).filter(is_elsewhere);
         let others_are_open = self.unexplained.iter().any(|open| !first.is_open(&open.joint));
         // Elsewhere, the filter may have hidden the structure of the same error.
         let falls = |open: &Unexplained| {
             let error = |outcome: &Self| outcome.errors.get(open.joint.as_str()).copied();
-            error(self)
-                .zip(error(first))
-                .is_none_or(|(error, before)| error <= FALLS_TO * before)
+            error(self).zip(error(first)).is_none_or(|(error, before)| error <= FALLS_TO * before)
         };
         if others_are_open || !closed().all(falls) || !kept.all(|finding| self.names(finding)) {
             return None;
@@ -243,9 +218,7 @@ impl Outcome<'_> {
 /// Whether a finding has a certain name, and is no baseline effect.
 fn is_certain(finding: &Finding) -> bool {
     !finding.as_effect.spec().is_baseline
-        && finding
-            .probability
-            .is_some_and(|probability| probability >= CERTAIN_ENOUGH)
+        && finding.probability.is_some_and(|probability| probability >= CERTAIN_ENOUGH)
 }
 
 /// Notes that the search goes on with the filter at `cutoff` (Hz).
@@ -294,11 +267,7 @@ mod tests {
             unexplained: &[open("elbow"), open("wrist")],
             errors: [("elbow", 0.4)].into(),
         };
-        let second = Outcome {
-            findings: findings.iter().collect(),
-            unexplained,
-            errors: [("elbow", error)].into(),
-        };
+        let second = Outcome { findings: findings.iter().collect(), unexplained, errors: [("elbow", error)].into() };
         second.reason_beside(&first).is_some()
     }
 
@@ -312,22 +281,10 @@ mod tests {
     #[test]
     fn a_second_look_needs_a_new_name_that_is_the_reason() {
         assert!(is_taken(&[named(&Backlash, 0.985, 0.2)], &[open("wrist")]));
-        assert!(
-            !is_taken(&[], &[open("wrist")]),
-            "without a name, the residual was only filtered"
-        );
-        assert!(
-            !is_taken(&[named(&Backlash, 0.985, 0.02)], &[open("wrist")]),
-            "too small"
-        );
-        assert!(
-            !is_taken(&[named(&Backlash, 0.6, 0.2)], &[open("wrist")]),
-            "not certain"
-        );
-        assert!(
-            !is_taken(&[named(&CoulombFriction, 0.985, 0.2)], &[open("wrist")]),
-            "known, and baseline"
-        );
+        assert!(!is_taken(&[], &[open("wrist")]), "without a name, the residual was only filtered");
+        assert!(!is_taken(&[named(&Backlash, 0.985, 0.02)], &[open("wrist")]), "too small");
+        assert!(!is_taken(&[named(&Backlash, 0.6, 0.2)], &[open("wrist")]), "not certain");
+        assert!(!is_taken(&[named(&CoulombFriction, 0.985, 0.2)], &[open("wrist")]), "known, and baseline");
     }
 
     #[test]
@@ -341,30 +298,17 @@ mod tests {
     #[test]
     fn a_second_look_keeps_the_certain_names_of_explained_joints() {
         let gap = named(&Backlash, 0.985, 0.2);
-        let on = |joint: &str| Finding {
-            joint: Some(joint.to_owned()),
-            ..gap.clone()
-        };
+        let on = |joint: &str| Finding { joint: Some(joint.to_owned()), ..gap.clone() };
         let both = [gap.clone(), on("shoulder")];
         assert!(is_taken_after(&[on("shoulder")], &both, &[]));
-        assert!(
-            !is_taken_after(&[on("shoulder")], std::slice::from_ref(&gap), &[]),
-            "lost"
-        );
-        assert!(
-            is_taken_after(&[on("wrist")], &[gap], &[]),
-            "of a joint that was unexplained"
-        );
+        assert!(!is_taken_after(&[on("shoulder")], std::slice::from_ref(&gap), &[]), "lost");
+        assert!(is_taken_after(&[on("wrist")], &[gap], &[]), "of a joint that was unexplained");
     }
 
     #[test]
     fn the_note_says_what_explains_which_residuals() {
         let (gap, open) = (named(&Backlash, 0.985, 0.2), [open("elbow"), open("wrist")]);
-        let of = |findings, unexplained| Outcome {
-            findings,
-            unexplained,
-            errors: BTreeMap::new(),
-        };
+        let of = |findings, unexplained| Outcome { findings, unexplained, errors: BTreeMap::new() };
         let reason = of(vec![&gap], &open[1..]).reason_beside(&of(Vec::new(), &open));
         assert_eq!(reason.as_deref(), Some("backlash of elbow explains residuals of elbow"));
     }

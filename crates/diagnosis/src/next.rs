@@ -83,9 +83,7 @@ pub fn propose(
     let unexplained = &conclusion.unexplained;
     let (confusions, unpredicted) = confusions(last, &conclusion.findings, unexplained);
     let hidden = visible(last, &conclusion.not_observable);
-    let columns = confusions
-        .iter()
-        .flat_map(|c| c.pair.instead.iter().flat_map(|(set, _)| set).chain(&c.pair.without));
+    let columns = confusions.iter().flat_map(|c| c.pair.instead.iter().flat_map(|(set, _)| set).chain(&c.pair.without));
     let columns = columns.copied().chain(hidden.iter().filter_map(|h| Some(h.column?.0)));
     let nothing = Next {
         report: NextExperiment {
@@ -154,32 +152,17 @@ fn tried(
     motion: Reference,
 ) -> Tried {
     let outlook = prospect.with(&motion);
-    let separations: Vec<[f64; 2]> = confusions
-        .iter()
-        .map(|c| prospect.separation(&outlook, &c.pair))
-        .collect();
+    let separations: Vec<[f64; 2]> = confusions.iter().map(|c| prospect.separation(&outlook, &c.pair)).collect();
     let shows = shows(prospect, &outlook, hidden);
-    let apart = separations
-        .iter()
-        .map(|[apart, needed]| (apart / needed).clamp(COUNTED.0, COUNTED.1).ln());
-    let seen = hidden
-        .iter()
-        .zip(&shows)
-        .map(|(hidden, after)| match (hidden.gain(*after), after) {
-            (Some(gain), _) => gain.clamp(0.0, 2.0),
-            // Detectable at no size before, and at some size now.
-            (None, Some(_)) => 1.0,
-            (None, None) => 0.0,
-        });
+    let apart = separations.iter().map(|[apart, needed]| (apart / needed).clamp(COUNTED.0, COUNTED.1).ln());
+    let seen = hidden.iter().zip(&shows).map(|(hidden, after)| match (hidden.gain(*after), after) {
+        (Some(gain), _) => gain.clamp(0.0, 2.0),
+        // Detectable at no size before, and at some size now.
+        (None, Some(_)) => 1.0,
+        (None, None) => 0.0,
+    });
     let worth = apart.sum::<f64>() + WEIGHT_OF_SIZES * seen.sum::<f64>();
-    Tried {
-        design,
-        parts,
-        motion,
-        separations,
-        shows,
-        worth,
-    }
+    Tried { design, parts, motion, separations, shows, worth }
 }
 
 impl Hidden<'_> {
@@ -248,24 +231,15 @@ fn confusions(
             // Wrong inertial parameters have no columns of their own: they are in the background.
             if instead.is_empty() {
                 unpredicted.push(advice::unpredicted(
-                    Confusable {
-                        effect: finding.effect,
-                        joint: finding.joint.clone(),
-                    },
+                    Confusable { effect: finding.effect, joint: finding.joint.clone() },
                     rival.clone(),
                     study.data.arm.joints().last().map(|joint| &*joint.name),
                 ));
                 continue;
             }
-            let pair = Pair {
-                without: columns_of(&set),
-                instead,
-            };
+            let pair = Pair { without: columns_of(&set), instead };
             list.push(Confusion {
-                finding: Confusable {
-                    effect: finding.effect,
-                    joint: finding.joint.clone(),
-                },
+                finding: Confusable { effect: finding.effect, joint: finding.joint.clone() },
                 rival: rival.clone(),
                 pair,
                 is_explained: !unexplained.iter().any(|open| {
@@ -288,13 +262,7 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
         let spec = effects::spec(entry.effect)?;
         if matches!(spec.detectability, Detectability::Limit { .. }) {
             let (parameter, before) = entry.would_be_seen_below.iter().next()?;
-            return Some(Hidden {
-                entry,
-                parameter,
-                before: Some(*before),
-                joint,
-                column: None,
-            });
+            return Some(Hidden { entry, parameter, before: Some(*before), joint, column: None });
         }
         if !matches!(spec.detectability, Detectability::Linear { .. }) {
             return None;
@@ -304,11 +272,7 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
         let candidate = candidates.position(|candidate| {
             candidate.hypothesis.name() == Some(entry.effect) && candidate.joint == Some(joint)
         })?;
-        let column = study.candidates[candidate]
-            .columns
-            .iter()
-            .rev()
-            .find(|c| !selected.fit.columns.contains(c))?;
+        let column = study.candidates[candidate].columns.iter().rev().find(|c| !selected.fit.columns.contains(c))?;
         Some(Hidden {
             entry,
             parameter,
@@ -331,11 +295,7 @@ fn described(
     best: usize,
 ) -> Next {
     let selected = &list[best];
-    let sure = if has_background {
-        SURELY_RESOLVED_BESIDE
-    } else {
-        SURELY_RESOLVED
-    };
+    let sure = if has_background { SURELY_RESOLVED_BESIDE } else { SURELY_RESOLVED };
     let (mut separates, mut not_separated) = (Vec::new(), Vec::new());
     for (k, confusion) in confusions.iter().enumerate() {
         let [after, needed] = selected.separations[k];
@@ -346,25 +306,13 @@ fn described(
             before[k][0] >= SURELY_RESOLVED * before[k][1].min(needed),
         );
         if after >= sure * needed && barred.is_none() {
-            separates.push(Separation {
-                finding,
-                rival,
-                before: before[k][0],
-                after,
-                needed: sure * needed,
-            });
+            separates.push(Separation { finding, rival, before: before[k][0], after, needed: sure * needed });
             continue;
         }
         let all = list.iter().map(|tried| tried.separations[k]);
         let furthest = all.max_by(|a, b| (a[0] / a[1]).total_cmp(&(b[0] / b[1])));
         let furthest = furthest.unwrap_or([after, needed]);
-        not_separated.push(advice::not_separated(
-            finding,
-            rival,
-            furthest,
-            sure * furthest[1],
-            barred,
-        ));
+        not_separated.push(advice::not_separated(finding, rival, furthest, sure * furthest[1], barred));
     }
     let shows: Vec<Shows> = hidden
         .iter()

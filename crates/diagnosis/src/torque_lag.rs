@@ -38,12 +38,7 @@ impl TorqueLag {
             .filter(|candidate| candidate.hypothesis.is(&ActuationDelay))
             .flat_map(|candidate| candidate.columns.iter().copied())
             .collect();
-        let columns: Vec<usize> = fit
-            .selected()
-            .iter()
-            .copied()
-            .filter(|column| !delays.contains(column))
-            .collect();
+        let columns: Vec<usize> = fit.selected().iter().copied().filter(|column| !delays.contains(column)).collect();
         let joints = (0..study.data.motions.dof)
             .filter(|&joint| study.data.scales.moves(joint) && study.data.scales.torque[joint] > 0.0);
         let joints: Vec<usize> = joints.collect();
@@ -52,9 +47,7 @@ impl TorqueLag {
             return None;
         }
         // Dry friction turns round over a distance, and so late, but gravity and inertia do not.
-        let turns = joints
-            .iter()
-            .flat_map(|&joint| TURNS_LATE.map(|delay| Term::on(&LATE_SIGN, joint).sized([delay])));
+        let turns = joints.iter().flat_map(|&joint| TURNS_LATE.map(|delay| Term::on(&LATE_SIGN, joint).sized([delay])));
         let lags = joints.iter().map(|&joint| Term::on(&LATE, joint).sized([UNIT_LAG]));
         let strengths = study.strengths.without_lag();
         let (_, lagging) = study.table_and_fit_at(&strengths, &columns, turns.chain(lags).collect(), &fit.weights);
@@ -79,10 +72,7 @@ impl TorqueLag {
         };
         let is_clear = |&&k: &&usize| lags[k] * common.value.signum() > SURE_OF_LAG * covariance[(k, k)].sqrt();
         let clear = agreeing.iter().filter(is_clear).count();
-        let lag = Self {
-            seconds: UNIT_LAG * common.value,
-            half: UNIT_LAG * NORMAL_95 * common.deviation,
-        };
+        let lag = Self { seconds: UNIT_LAG * common.value, half: UNIT_LAG * NORMAL_95 * common.deviation };
         // It must be seen without the joint that shows it best, because one joint alone may have any delay.
         let is_seen_without = |&joint: &usize| {
             let others: Vec<usize> = agreeing.iter().copied().filter(|&other| other != joint).collect();
@@ -168,19 +158,13 @@ impl WithoutLag {
     /// The recordings of `inputs` without `lag` (s).
     pub fn new(inputs: &[Input<'_>], lag: f64) -> Self {
         let recordings = inputs.iter().filter(|_| lag != 0.0);
-        Self(
-            recordings
-                .map(|input| input.recording.without_torque_lag(lag))
-                .collect(),
-        )
+        Self(recordings.map(|input| input.recording.without_torque_lag(lag)).collect())
     }
 
     /// `inputs` with these recordings.
     pub fn of<'a>(&'a self, inputs: &[Input<'a>]) -> Vec<Input<'a>> {
-        let of = |(at, input): (usize, &Input<'a>)| Input {
-            recording: self.0.get(at).unwrap_or(input.recording),
-            ..*input
-        };
+        let of =
+            |(at, input): (usize, &Input<'a>)| Input { recording: self.0.get(at).unwrap_or(input.recording), ..*input };
         inputs.iter().enumerate().map(of).collect()
     }
 }

@@ -60,18 +60,14 @@ impl Trace {
     pub fn step(&self, decisions: impl IntoIterator<Item = (Action, String, Option<String>, &'static str, f64)>) {
         let mut list = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let step = list.last().map_or(0, |last| last.step) + 1;
-        list.extend(
-            decisions
-                .into_iter()
-                .map(|(action, effect, joint, rule, nats)| Decision {
-                    step,
-                    action,
-                    effect,
-                    joint,
-                    rule,
-                    nats,
-                }),
-        );
+        list.extend(decisions.into_iter().map(|(action, effect, joint, rule, nats)| Decision {
+            step,
+            action,
+            effect,
+            joint,
+            rule,
+            nats,
+        }));
     }
 
     /// Returns and removes all decisions.

@@ -19,12 +19,7 @@ fn with_friction() -> RegularRecording {
 }
 
 fn of(arm: &Arm, recording: &RegularRecording) -> Agreement {
-    let input = Input {
-        name: "a.csv",
-        recording,
-        held_out: false,
-        before: false,
-    };
+    let input = Input { name: "a.csv", recording, held_out: false, before: false };
     agreement(arm, &[input], &[], None).expect("it can be fitted")
 }
 

@@ -59,10 +59,7 @@ fn a_torque_by_the_speed_of_another_joint_is_not_a_transmission_coupling() {
         tau[ELBOW] += 1.2 * motion.qd[SHOULDER];
     };
     let open = check(&trio(), &injected, &[]);
-    let behind = Dependence {
-        on: Regressor::OtherJoint,
-        joint: Some("shoulder".to_owned()),
-    };
+    let behind = Dependence { on: Regressor::OtherJoint, joint: Some("shoulder".to_owned()) };
     assert_eq!(open, [("elbow".to_owned(), vec![behind])]);
 }
 
@@ -70,11 +67,7 @@ fn a_torque_by_the_speed_of_another_joint_is_not_a_transmission_coupling() {
 #[test]
 fn a_turned_base_is_not_an_encoder_offset() {
     let robot = trio().with_turned_base(Vector3::new(0.0, 1.0, 0.0), 0.1);
-    let open = check(
-        &robot,
-        &|motion, tau| baseline_friction(motion, tau),
-        &[("gravity_misalignment", None)],
-    );
+    let open = check(&robot, &|motion, tau| baseline_friction(motion, tau), &[("gravity_misalignment", None)]);
     assert!(open.is_empty(), "{open:?}");
 }
 
@@ -93,10 +86,6 @@ fn viscous_friction_is_not_a_quadratic_drag() {
 #[test]
 fn a_common_factor_of_all_masses_is_not_a_link_inertial_error() {
     let robot = (0..3).fold(trio(), |arm, link| arm.with_scaled_link(link, 1.3));
-    let open = check(
-        &robot,
-        &|motion, tau| baseline_friction(motion, tau),
-        &[("inertial_scale", None)],
-    );
+    let open = check(&robot, &|motion, tau| baseline_friction(motion, tau), &[("inertial_scale", None)]);
     assert!(open.is_empty(), "{open:?}");
 }

@@ -29,39 +29,19 @@ fn check(
         .filter(|finding| !plain.contains(&finding.effect) || finding.effect == effect)
         .map(|finding| (finding.effect, finding.joint.as_deref()))
         .collect();
-    assert_eq!(
-        special,
-        [(effect, joint)],
-        "{:?} {:#?}",
-        sentences(&diagnosis),
-        report.unexplained
-    );
+    assert_eq!(special, [(effect, joint)], "{:?} {:#?}", sentences(&diagnosis), report.unexplained);
     assert_eq!(report.verdict, Verdict::Explained, "{:?}", report.unexplained);
-    let finding = report
-        .findings
-        .iter()
-        .find(|finding| finding.effect == effect)
-        .expect("it is there");
+    let finding = report.findings.iter().find(|finding| finding.effect == effect).expect("it is there");
     for (name, truth) in truth {
         let found = finding.parameters[name];
-        assert!(
-            (found.value / truth - 1.0).abs() < tolerance,
-            "{name}: {found:?} instead of {truth}"
-        );
+        assert!((found.value / truth - 1.0).abs() < tolerance, "{name}: {found:?} instead of {truth}");
     }
-    assert!(
-        finding.held_out_gain.is_some_and(|gain| gain > 0.05),
-        "{:?}",
-        finding.held_out_gain
-    );
+    assert!(finding.held_out_gain.is_some_and(|gain| gain > 0.05), "{:?}", finding.held_out_gain);
     // With the findings as known effects, nothing is found.
     let again = diagnosed(&trio(), robot, injected, diagnosis.effects.clone());
     assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
     for (joint, fit) in &again.report.fit {
-        assert_eq!(
-            fit.torque_std, report.fit[joint].torque_std,
-            "errors are over the measured torque"
-        );
+        assert_eq!(fit.torque_std, report.fit[joint].torque_std, "errors are over the measured torque");
     }
     exports_what_it_reports(&diagnosis, &again, 0.4);
     for (joint, fit) in &report.fit {
@@ -84,10 +64,7 @@ fn a_torque_scale_multiplies_the_friction_beside_it() {
     let parameter = |effect: &str, name: &str| {
         let is_wanted = |f: &&diagnosis::Finding| f.effect == effect && f.joint.as_deref() == Some("elbow");
         let finding = diagnosis.report.findings.iter().find(is_wanted);
-        finding
-            .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
-            .parameters[name]
-            .value
+        finding.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))).parameters[name].value
     };
     let is_near = |found: f64, truth: f64| assert!((found / truth - 1.0).abs() < 0.05, "{found} instead of {truth}");
     is_near(parameter("torque_scale", "factor"), 1.3);
@@ -110,24 +87,12 @@ fn added(effect: &str, joint: usize, torque: impl Fn(&Motion) -> f64, truth: &[(
 
 #[test]
 fn quadratic_drag() {
-    added(
-        "quadratic_drag",
-        ELBOW,
-        |m| 1.2 * m.qd[ELBOW] * m.qd[ELBOW].abs(),
-        &[("coefficient", 1.2)],
-        0.05,
-    );
+    added("quadratic_drag", ELBOW, |m| 1.2 * m.qd[ELBOW] * m.qd[ELBOW].abs(), &[("coefficient", 1.2)], 0.05);
 }
 
 #[test]
 fn rotor_inertia() {
-    added(
-        "rotor_inertia",
-        ELBOW,
-        |m| 0.3 * m.qdd[ELBOW],
-        &[("inertia", 0.3)],
-        0.05,
-    );
+    added("rotor_inertia", ELBOW, |m| 0.3 * m.qdd[ELBOW], &[("inertia", 0.3)], 0.05);
 }
 
 #[test]
@@ -138,37 +103,19 @@ fn torque_offset() {
 #[test]
 fn torque_ripple() {
     let ripple = |m: &Motion| 1.2 * (17.0 * m.q[ELBOW] + 0.6).sin();
-    added(
-        "torque_ripple",
-        ELBOW,
-        ripple,
-        &[("amplitude", 1.2), ("periods", 17.0)],
-        0.05,
-    );
+    added("torque_ripple", ELBOW, ripple, &[("amplitude", 1.2), ("periods", 17.0)], 0.05);
 }
 
 #[test]
 fn friction_asymmetry() {
     let law = |m: &Motion| if m.qd[ELBOW] > 0.0 { 3.0 } else { -1.0 };
-    added(
-        "friction_asymmetry",
-        ELBOW,
-        law,
-        &[("positive", 3.6), ("negative", 1.6)],
-        0.05,
-    );
+    added("friction_asymmetry", ELBOW, law, &[("positive", 3.6), ("negative", 1.6)], 0.05);
 }
 
 #[test]
 fn stribeck_friction() {
     let law = |m: &Motion| 3.0 * (-(m.qd[ELBOW] / 0.12).powi(2)).exp() * m.qd[ELBOW].signum();
-    added(
-        "stribeck_friction",
-        ELBOW,
-        law,
-        &[("coulomb", 0.6), ("velocity", 0.12)],
-        0.25,
-    );
+    added("stribeck_friction", ELBOW, law, &[("coulomb", 0.6), ("velocity", 0.12)], 0.25);
 }
 
 #[test]
@@ -184,14 +131,7 @@ fn load_dependent_friction() {
         baseline_friction(motion, tau);
         tau[SHOULDER] += 0.15 * load * motion.qd[SHOULDER].signum();
     };
-    check(
-        &trio(),
-        &injected,
-        "load_dependent_friction",
-        Some("shoulder"),
-        &[("gain", 0.15)],
-        0.06,
-    );
+    check(&trio(), &injected, "load_dependent_friction", Some("shoulder"), &[("gain", 0.15)], 0.06);
 }
 
 /// Gears that turn the elbow's drive and another's together act on both.
@@ -221,40 +161,19 @@ fn torque_scale() {
         baseline_friction(motion, tau);
         tau[SHOULDER] *= 1.15;
     };
-    check(
-        &trio(),
-        &injected,
-        "torque_scale",
-        Some("shoulder"),
-        &[("factor", 1.15)],
-        0.03,
-    );
+    check(&trio(), &injected, "torque_scale", Some("shoulder"), &[("factor", 1.15)], 0.03);
 }
 
 #[test]
 fn actuation_delay() {
-    check(
-        &trio(),
-        &delayed_on(SHOULDER, 0.012, 0.0),
-        "actuation_delay",
-        Some("shoulder"),
-        &[],
-        0.0,
-    );
+    check(&trio(), &delayed_on(SHOULDER, 0.012, 0.0), "actuation_delay", Some("shoulder"), &[], 0.0);
 }
 
 #[test]
 fn actuation_delay_has_its_size() {
     for delay in [0.006, 0.012] {
         let truth = [("delay", delay)];
-        check(
-            &trio(),
-            &delayed_on(SHOULDER, delay, 0.0),
-            "actuation_delay",
-            Some("shoulder"),
-            &truth,
-            0.1,
-        );
+        check(&trio(), &delayed_on(SHOULDER, delay, 0.0), "actuation_delay", Some("shoulder"), &truth, 0.1);
     }
 }
 
@@ -264,14 +183,7 @@ fn encoder_offset() {
         baseline_friction(motion, tau);
         motion.q[ELBOW] += 0.06;
     };
-    check(
-        &trio(),
-        &injected,
-        "encoder_offset",
-        Some("elbow"),
-        &[("offset", 0.06)],
-        0.1,
-    );
+    check(&trio(), &injected, "encoder_offset", Some("elbow"), &[("offset", 0.06)], 0.1);
 }
 
 #[test]
@@ -290,14 +202,7 @@ fn link_inertial_error() {
 #[test]
 fn gravity_misalignment() {
     let robot = trio().with_turned_base(Vector3::new(1.0, 0.0, 0.0), 0.08);
-    check(
-        &robot,
-        &|m, tau| baseline_friction(m, tau),
-        "gravity_misalignment",
-        None,
-        &[("angle", 0.08)],
-        0.1,
-    );
+    check(&robot, &|m, tau| baseline_friction(m, tau), "gravity_misalignment", None, &[("angle", 0.08)], 0.1);
 }
 
 #[test]
@@ -307,14 +212,7 @@ fn joint_elasticity() {
         motion.q[ELBOW] += tau[ELBOW] / 250.0;
         baseline_friction(motion, tau);
     };
-    let diagnosis = check(
-        &trio(),
-        &injected,
-        "joint_elasticity",
-        Some("elbow"),
-        &[("stiffness", 250.0)],
-        0.15,
-    );
+    let diagnosis = check(&trio(), &injected, "joint_elasticity", Some("elbow"), &[("stiffness", 250.0)], 0.15);
     // The spring has no damping: what the fit gives it is an upper bound.
     let is_spring = |finding: &&diagnosis::Finding| finding.effect == "joint_elasticity";
     let mut springs = diagnosis.report.findings.iter().filter(is_spring);
@@ -354,11 +252,7 @@ fn a_dead_channel_is_omitted() {
     assert!(!report.fit.contains_key("elbow"), "{:?}", report.fit["elbow"]);
     let not_diagnosed: Vec<_> = report.not_diagnosed.iter().map(|group| &group.joints[..]).collect();
     assert_eq!(not_diagnosed, [["elbow"]]);
-    assert!(
-        report.fit["turn"]
-            .held_out_nrmse_augmented
-            .is_some_and(|error| error < 0.03)
-    );
+    assert!(report.fit["turn"].held_out_nrmse_augmented.is_some_and(|error| error < 0.03));
 }
 
 /// Torques that do not depend on the motion are not named.
@@ -372,11 +266,7 @@ fn unrelated_torques_are_not_named() {
         }
     };
     let report = diagnosed(&trio(), &trio(), &injected, Vec::new()).report;
-    let named: Vec<&str> = report
-        .findings
-        .iter()
-        .map(|finding| finding.sentence.as_str())
-        .collect();
+    let named: Vec<&str> = report.findings.iter().map(|finding| finding.sentence.as_str()).collect();
     assert!(named.is_empty(), "{named:?}");
     assert_eq!(report.verdict, Verdict::Unexplained);
 }

@@ -63,9 +63,7 @@ fn friction_that_grew_or_fell_is_found() {
             let level = if is_after(motion) { after } else { before };
             tau[ELBOW] += level * motion.qd[ELBOW].signum();
         });
-        let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else {
-            panic!("{:?}", sentences(&diagnosis))
-        };
+        let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
         assert_eq!((effect, joint, found), ("coulomb_friction", Some("elbow"), change));
         let size = finding.parameters["level"].value;
         assert!((size / f64::abs(after - before) - 1.0).abs() < 0.05, "{size}");
@@ -86,16 +84,11 @@ fn a_constant_torque_that_went_away_is_found() {
                 tau[ELBOW] += 2.0;
             }
         });
-        let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else {
-            panic!("{:?}", sentences(&diagnosis))
-        };
+        let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
         assert_eq!((effect, joint, found), ("torque_offset", Some("elbow"), change));
         let offset = finding.parameters["offset"].value;
         assert!((offset / 2.0 - 1.0).abs() < 0.05, "{offset}");
-        let offsets = diagnosis
-            .effects
-            .iter()
-            .filter(|effect| effect.name() == "torque_offset");
+        let offsets = diagnosis.effects.iter().filter(|effect| effect.name() == "torque_offset");
         let today: f64 = offsets.map(|effect| effect.number("offset")).sum();
         let truth = if sign > 0.0 { 2.0 } else { 0.0 };
         assert!((today - truth).abs() < 0.1, "{today} instead of {truth}");
@@ -120,10 +113,7 @@ fn a_torque_constant_that_changed_a_little_is_found() {
     let [(finding, effect, joint, change)] = &changes[..] else {
         panic!("{:?}", sentences(&diagnosis));
     };
-    assert_eq!(
-        (*effect, *joint, *change),
-        ("torque_scale", Some("shoulder"), Change::Added)
-    );
+    assert_eq!((*effect, *joint, *change), ("torque_scale", Some("shoulder"), Change::Added));
     let factor = finding.parameters["factor"].value;
     assert!((factor / 1.04 - 1.0).abs() < 0.005, "{factor}");
 }
@@ -143,10 +133,7 @@ fn friction_that_fell_is_found_although_it_varies() {
     let is_it = |&&(_, effect, joint, change): &&(&Finding, &str, Option<&str>, Change)| {
         (effect, joint, change) == ("coulomb_friction", Some("elbow"), Change::Reduced)
     };
-    let found = changes
-        .iter()
-        .find(is_it)
-        .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
+    let found = changes.iter().find(is_it).unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
     let size = found.0.parameters["level"].value;
     assert!((size / 1.28 - 1.0).abs() < 0.2, "{size}");
 }
@@ -199,9 +186,7 @@ fn a_spring_that_broke_is_found() {
             tau[SHOULDER] += 6.0 * (motion.q[SHOULDER] - 0.2);
         }
     });
-    let [(finding, effect, joint, change)] = changes(&diagnosis)[..] else {
-        panic!("{:?}", sentences(&diagnosis))
-    };
+    let [(finding, effect, joint, change)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
     assert_eq!((effect, joint, change), ("spring", Some("shoulder"), Change::Removed));
     let stiffness = finding.parameters["stiffness"].value;
     assert!((stiffness / 6.0 - 1.0).abs() < 0.05, "{stiffness}");
@@ -214,32 +199,18 @@ fn a_load_that_was_taken_off_is_no_error_of_the_model() {
     let last = trio().joints().last().map_or(0.0, |joint| joint.inertia.mass);
     let mass = 1.5 * last;
     let diagnosis = changed_load(&load(mass), [1.0; 3], 0.0, |motion| !is_after(motion));
-    let [(finding, effect, joint, change)] = changes(&diagnosis)[..] else {
-        panic!("{:?}", sentences(&diagnosis))
-    };
+    let [(finding, effect, joint, change)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
     assert_eq!((effect, joint, change), ("payload", None, Change::Removed));
     let found = finding.parameters["mass"].value;
     assert!((found / mass - 1.0).abs() < 0.02, "{found} instead of {mass}");
     assert!(!finding.since_before && !diagnosis.effects.iter().any(|effect| effect.is(&Payload)));
-    let others = diagnosis
-        .report
-        .findings
-        .iter()
-        .filter(|other| other.effect != "payload");
-    assert!(
-        others.clone().all(|other| other.effect.ends_with("friction")),
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    let others = diagnosis.report.findings.iter().filter(|other| other.effect != "payload");
+    assert!(others.clone().all(|other| other.effect.ends_with("friction")), "{:?}", sentences(&diagnosis));
 }
 
 /// A body of `mass` (kg) on the tool.
 fn load(mass: f64) -> Inertia {
-    Inertia {
-        mass,
-        com: arm::Vector3::new(0.02, -0.01, 0.08),
-        tensor: arm::Matrix3::identity() * (2e-3 * mass / 1.2),
-    }
+    Inertia { mass, com: arm::Vector3::new(0.02, -0.01, 0.08), tensor: arm::Matrix3::identity() * (2e-3 * mass / 1.2) }
 }
 
 /// The diagnosis of a robot with `load` in the motions that `is_loaded` selects, whose torques are recorded with these `factors`. Each
@@ -259,11 +230,7 @@ fn changed_load(load: &Inertia, factors: [f64; 3], pause: f64, is_loaded: impl F
     let recording = |variant: usize| {
         let mut recording = support::recorded(&trio(), variant, 16.0, &injected);
         let second_half = recording.time.len() / 2;
-        recording
-            .time
-            .iter_mut()
-            .skip(second_half)
-            .for_each(|time| *time += pause);
+        recording.time.iter_mut().skip(second_half).for_each(|time| *time += pause);
         regular(&recording)
     };
     let recordings: Vec<RegularRecording> = (0..4).map(recording).collect();
@@ -304,16 +271,9 @@ fn friction_of_another_form_remains() {
         let level = if is_after(motion) { 0.5 } else { 1.3 };
         tau[ELBOW] += (level + 0.25 * load) * motion.qd[ELBOW].signum();
     });
-    let on_elbow: Vec<_> = changes(&diagnosis)
-        .into_iter()
-        .map(|(_, effect, joint, change)| (effect, joint, change))
-        .collect();
-    assert_eq!(
-        on_elbow,
-        [("coulomb_friction", Some("elbow"), Change::Reduced)],
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    let on_elbow: Vec<_> =
+        changes(&diagnosis).into_iter().map(|(_, effect, joint, change)| (effect, joint, change)).collect();
+    assert_eq!(on_elbow, [("coulomb_friction", Some("elbow"), Change::Reduced)], "{:?}", sentences(&diagnosis));
     let today = support::effects_on(&diagnosis, "elbow");
     assert!(today.contains(&"load_dependent_friction"), "{today:?}");
 }
@@ -326,13 +286,10 @@ fn the_friction_of_another_day_is_no_change() {
             let mut friction = [0.0; 3];
             baseline_friction(motion, &mut friction);
             let today = if is_after(motion) { part } else { 1.0 };
-            tau.iter_mut()
-                .zip(friction)
-                .for_each(|(tau, friction)| *tau += today * friction);
+            tau.iter_mut().zip(friction).for_each(|(tau, friction)| *tau += today * friction);
         };
-        let recordings: Vec<RegularRecording> = [1, 2, 3]
-            .map(|variant| regular(&support::recorded(&trio(), variant, 16.0, &machine)))
-            .into();
+        let recordings: Vec<RegularRecording> =
+            [1, 2, 3].map(|variant| regular(&support::recorded(&trio(), variant, 16.0, &machine))).into();
         let input = |(number, recording)| Input {
             name: ["a", "b", "c"][number],
             recording,
@@ -341,11 +298,6 @@ fn the_friction_of_another_day_is_no_change() {
         };
         let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
         let diagnosis = diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed");
-        assert_eq!(
-            !changes(&diagnosis).is_empty(),
-            is_named,
-            "{part}: {:?}",
-            sentences(&diagnosis)
-        );
+        assert_eq!(!changes(&diagnosis).is_empty(), is_named, "{part}: {:?}", sentences(&diagnosis));
     }
 }

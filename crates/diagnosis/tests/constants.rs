@@ -15,13 +15,8 @@ fn diagnosed(constants: [f64; 3], known: &[Effect]) -> Diagnosis {
             tau[joint] += friction[joint] + constants[joint];
         }
     };
-    let recordings: Vec<_> = (0..4)
-        .map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected)))
-        .collect();
-    let options = Options {
-        known: known.to_vec(),
-        ..Options::default()
-    };
+    let recordings: Vec<_> = (0..4).map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected))).collect();
+    let options = Options { known: known.to_vec(), ..Options::default() };
     diagnose(&trio(), &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed")
 }
 
@@ -33,11 +28,7 @@ fn assert_constants(diagnosis: &Diagnosis, joints: &[(&str, f64)]) {
     for &(joint, constant) in joints {
         let [low, high] = found[joint].ci95;
         assert!(low <= constant && constant <= high, "{joint}: {:?}", found[joint]);
-        assert!(
-            (found[joint].value - constant).abs() < 0.004,
-            "{joint}: {:?}",
-            found[joint]
-        );
+        assert!((found[joint].value - constant).abs() < 0.004, "{joint}: {:?}", found[joint]);
     }
 }
 
@@ -55,10 +46,7 @@ fn small_constants_of_all_joints_are_corrected_without_names() {
     for (joint, fit) in &diagnosis.report.fit {
         let exported = fit.held_out_nrmse_exported.expect("it is moved");
         let known = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
-        assert!(
-            (exported - known).abs() < 1e-3,
-            "{joint}: {exported} reported, {known} with the effects"
-        );
+        assert!((exported - known).abs() < 1e-3, "{joint}: {exported} reported, {known} with the effects");
     }
 }
 
@@ -66,12 +54,7 @@ fn small_constants_of_all_joints_are_corrected_without_names() {
 #[test]
 fn a_large_constant_has_a_name() {
     let diagnosis = diagnosed([0.5, -0.05, 0.015], &[]);
-    assert_eq!(
-        named(&diagnosis),
-        [("torque_offset", Some("turn"))],
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert_eq!(named(&diagnosis), [("torque_offset", Some("turn"))], "{:?}", sentences(&diagnosis));
     assert_constants(&diagnosis, &[("shoulder", -0.05), ("elbow", 0.015)]);
 }
 
@@ -79,12 +62,7 @@ fn a_large_constant_has_a_name() {
 #[test]
 fn a_constant_far_larger_than_those_of_the_other_joints_has_a_name() {
     let diagnosis = diagnosed([0.05, 0.8, 0.05], &[]);
-    assert_eq!(
-        named(&diagnosis),
-        [("torque_offset", Some("shoulder"))],
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert_eq!(named(&diagnosis), [("torque_offset", Some("shoulder"))], "{:?}", sentences(&diagnosis));
     assert_constants(&diagnosis, &[("turn", 0.05), ("elbow", 0.05)]);
 }
 

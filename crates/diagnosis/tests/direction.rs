@@ -28,10 +28,7 @@ fn diagnosed_with(warmth: [f64; 4], [half, offset, excess]: [f64; 3], known: &[E
         regular(&recorded(&robot, variant, 16.0, &injected))
     };
     let recordings: Vec<RegularRecording> = (0..4).map(record).collect();
-    let options = Options {
-        known: known.to_vec(),
-        ..Options::default()
-    };
+    let options = Options { known: known.to_vec(), ..Options::default() };
     diagnose(&robot, &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed")
 }
 
@@ -90,9 +87,6 @@ fn an_offset_beside_another_friction_states_no_second_level() {
     let (finding, _) = constant(&diagnosis);
     assert_eq!(finding.effect, "torque_offset");
     let elbow = effects_on(&diagnosis, "elbow");
-    assert!(
-        elbow.contains(&"stribeck_friction") && !elbow.contains(&"coulomb_friction"),
-        "{elbow:?}"
-    );
+    assert!(elbow.contains(&"stribeck_friction") && !elbow.contains(&"coulomb_friction"), "{elbow:?}");
     exports_what_it_reports(&diagnosis, &diagnosed_with(WARMTH, sizes, &diagnosis.effects), 0.2);
 }

@@ -48,10 +48,7 @@ fn diagnosed(injected: Injected<'_>, known: Vec<Effect>) -> Diagnosis {
         regular(&recording)
     };
     let recordings: Vec<RegularRecording> = (0..4).map(one).collect();
-    let options = Options {
-        known,
-        ..Options::default()
-    };
+    let options = Options { known, ..Options::default() };
     diagnose(&trio(), &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed")
 }
 
@@ -83,21 +80,13 @@ fn check(injected: Injected<'_>, effect: &str, (parameter, truth): (&str, f64)) 
             |finding: &&diagnosis::Finding| finding.effect == effect && finding.joint.as_deref() == Some("shoulder");
         let finding = report.findings.iter().find(is_it).unwrap_or_else(|| panic!("{said:?}"));
         let found = finding.parameters[parameter].value;
-        assert!(
-            (found / truth - 1.0).abs() < 0.1,
-            "{parameter}: {found} instead of {truth}"
-        );
+        assert!((found / truth - 1.0).abs() < 0.1, "{parameter}: {found} instead of {truth}");
         let finds_rotors = report.findings.iter().any(|finding| finding.effect == "rotor_inertia");
         assert_eq!(finds_rotors, known.is_empty(), "{said:?}");
 
         let again = diagnosed(injected, all(&known, &diagnosis));
         assert!(again.report.findings.is_empty(), "known: {:?}", sentences(&again));
-        assert_eq!(
-            again.report.verdict,
-            Verdict::NoMismatch,
-            "{:?}",
-            again.report.unexplained
-        );
+        assert_eq!(again.report.verdict, Verdict::NoMismatch, "{:?}", again.report.unexplained);
         exports_what_it_reports(&diagnosis, &again, 0.2);
     }
 }
@@ -142,11 +131,7 @@ fn a_delay_shows_in_the_torque_of_a_drive_that_the_urdf_does_not_contain() {
         "{:?}",
         sentences(&diagnosis)
     );
-    let delay = diagnosis
-        .report
-        .findings
-        .iter()
-        .find_map(|finding| finding.parameters.get("delay"));
+    let delay = diagnosis.report.findings.iter().find_map(|finding| finding.parameters.get("delay"));
     let delay = delay.expect("it is named").value;
     assert!((delay / 0.009 - 1.0).abs() < 0.15, "{delay}");
 }
@@ -165,11 +150,6 @@ fn a_torque_constant_that_changes_leaves_no_drift() {
             }
         };
         let found = diagnosed(&injected, rotors());
-        assert_eq!(
-            named(&found),
-            [("torque_scale", Some("elbow"))],
-            "{:?}",
-            sentences(&found)
-        );
+        assert_eq!(named(&found), [("torque_scale", Some("elbow"))], "{:?}", sentences(&found));
     }
 }

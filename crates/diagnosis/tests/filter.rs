@@ -9,10 +9,7 @@ use support::{TURN, baseline_friction, diagnosed_with, effects_on, inputs, named
 /// Half the gap (rad).
 const HALFGAP: f64 = 0.013;
 fn diagnosis(cutoff: Option<f64>) -> Diagnosis {
-    let options = Options {
-        cutoff,
-        ..Options::default()
-    };
+    let options = Options { cutoff, ..Options::default() };
     diagnosed_with(&trio(), &trio(), &with_gap(trio(), HALFGAP), &options).expect("it can be diagnosed")
 }
 
@@ -25,26 +22,15 @@ fn filters(diagnosis: &Diagnosis) -> Vec<&str> {
 fn a_gap_that_a_quick_filter_hides_is_found_through_a_slower_one() {
     let turn = trio().joints()[TURN].name.clone();
     let found = diagnosis(None);
-    let finding = found
-        .report
-        .findings
-        .iter()
-        .find(|finding| finding.effect == "backlash");
+    let finding = found.report.findings.iter().find(|finding| finding.effect == "backlash");
     let finding = finding.unwrap_or_else(|| panic!("{:?}", sentences(&found)));
     assert_eq!(finding.joint.as_ref(), Some(&turn));
     let half = finding.parameters["halfgap"].value;
     assert!((half - HALFGAP).abs() < 0.2 * HALFGAP, "{half}");
     assert!(found.report.unexplained.is_empty(), "{:?}", found.report.unexplained);
     assert_eq!(filters(&found), ["5.0 Hz"]);
-    assert!(
-        found.report.cutoff.is_some_and(|cutoff| (cutoff - 5.0).abs() < 0.1),
-        "{:?}",
-        found.report.cutoff
-    );
-    let note = found
-        .remarks
-        .iter()
-        .find(|remark| remark.contains("backlash of turn explains residuals of turn"));
+    assert!(found.report.cutoff.is_some_and(|cutoff| (cutoff - 5.0).abs() < 0.1), "{:?}", found.report.cutoff);
+    let note = found.remarks.iter().find(|remark| remark.contains("backlash of turn explains residuals of turn"));
     assert!(note.is_some(), "{:?}", found.remarks);
 }
 
@@ -52,11 +38,7 @@ fn a_gap_that_a_quick_filter_hides_is_found_through_a_slower_one() {
 #[test]
 fn a_stated_filter_is_kept() {
     let found = diagnosis(Some(12.0));
-    assert!(
-        !effects_on(&found, "turn").contains(&"backlash"),
-        "{:?}",
-        sentences(&found)
-    );
+    assert!(!effects_on(&found, "turn").contains(&"backlash"), "{:?}", sentences(&found));
     assert!(!found.report.unexplained.is_empty());
     assert_eq!(found.report.cutoff, Some(12.0));
     assert!(filters(&found).is_empty());
@@ -70,9 +52,7 @@ fn the_noise_of_positions_is_not_a_spring() {
     let recordings = [0, 1, 2].map(|variant| {
         let mut recording = recorded(&trio(), variant, 20.0, &|motion, tau| baseline_friction(motion, tau));
         for q in recording.q.iter_mut().flatten() {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             *q += 2e-4 * ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5);
         }
         regular(&recording)

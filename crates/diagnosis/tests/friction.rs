@@ -18,11 +18,7 @@ fn friction_that_grows_gradually_is_not_stribeck_friction() {
         };
         let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
         let is_stribeck = |finding: &diagnosis::Finding| finding.effect == "stribeck_friction";
-        assert!(
-            !diagnosis.report.findings.iter().any(is_stribeck),
-            "{reached} rad/s: {:?}",
-            sentences(&diagnosis)
-        );
+        assert!(!diagnosis.report.findings.iter().any(is_stribeck), "{reached} rad/s: {:?}", sentences(&diagnosis));
     }
 }
 
@@ -91,9 +87,7 @@ fn a_drag_does_not_take_the_place_of_viscous_friction() {
         let mut findings = diagnosis.report.findings.iter();
         let is_this =
             |finding: &&diagnosis::Finding| finding.effect == effect && finding.joint.as_deref() == Some("elbow");
-        findings
-            .find(is_this)
-            .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
+        findings.find(is_this).unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
     };
     for (effect, size, truth) in [
         ("quadratic_drag", "coefficient", drag),
@@ -114,9 +108,8 @@ fn with_new_stribeck_friction(before: usize, old: f64) -> Diagnosis {
         let additional = if motion.clock >= start(2) { 1.4 } else { old };
         tau[ELBOW] += additional * (-(speed / 0.12).powi(2)).exp() * speed.signum();
     };
-    let recordings: Vec<RegularRecording> = (2 - before..5)
-        .map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected)))
-        .collect();
+    let recordings: Vec<RegularRecording> =
+        (2 - before..5).map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected))).collect();
     let input = |(number, recording)| Input {
         name: ["a", "b", "c", "d", "e"][number],
         recording,
@@ -142,14 +135,8 @@ fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
         let widths = [("coulomb", 0.6), ("breakaway", 2.0), ("velocity", 0.12)].map(|(key, truth)| {
             let parameter = found.parameters[key];
             let [low, high] = parameter.ci95;
-            assert!(
-                low <= truth && truth <= high,
-                "{before}, {key}: {low} … {high}, {truth} is true"
-            );
-            assert!(
-                (parameter.value / truth - 1.0).abs() < 0.1,
-                "{before}, {key}: {parameter:?}"
-            );
+            assert!(low <= truth && truth <= high, "{before}, {key}: {low} … {high}, {truth} is true");
+            assert!((parameter.value / truth - 1.0).abs() < 0.1, "{before}, {key}: {parameter:?}");
             high - low
         });
         let names = effects_on(&diagnosis, "elbow");
@@ -166,10 +153,7 @@ fn recordings_from_before_do_not_worsen_the_size_of_new_stribeck_friction() {
 fn stribeck_friction_that_has_grown_is_not_counted_twice() {
     let diagnosis = with_new_stribeck_friction(2, 0.7);
     let level = |key: &str| -> f64 {
-        let effects = diagnosis
-            .effects
-            .iter()
-            .filter(|effect| effect.joint() == Some("elbow"));
+        let effects = diagnosis.effects.iter().filter(|effect| effect.joint() == Some("elbow"));
         let of = |effect: &effects::Effect| match effect.name() {
             "stribeck_friction" => effect.number(key),
             "coulomb_friction" => effect.number("level"),
@@ -179,11 +163,7 @@ fn stribeck_friction_that_has_grown_is_not_counted_twice() {
     };
     for (key, truth) in [("coulomb", 0.6), ("breakaway", 2.0)] {
         let found = level(key);
-        assert!(
-            (found / truth - 1.0).abs() < 0.1,
-            "{key}: {found}, {:?}",
-            sentences(&diagnosis)
-        );
+        assert!((found / truth - 1.0).abs() < 0.1, "{key}: {found}, {:?}", sentences(&diagnosis));
     }
 }
 

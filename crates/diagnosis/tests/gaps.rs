@@ -8,9 +8,8 @@ use support::{baseline_friction, diagnosed, effects_on, sentences, trio};
 
 /// The diagnosis of a gap on a URDF whose links are wrong by `wrong`, and its size found over the true one.
 fn found(halfgap: f64, wrong: f64) -> (Diagnosis, f64) {
-    let believed = (0..3).fold(trio(), |arm, link| {
-        arm.with_scaled_link(link, if link % 2 == 0 { 1.0 + wrong } else { 1.0 - wrong })
-    });
+    let believed = (0..3)
+        .fold(trio(), |arm, link| arm.with_scaled_link(link, if link % 2 == 0 { 1.0 + wrong } else { 1.0 - wrong }));
     let diagnosis = diagnosed(&believed, &trio(), &with_gap(trio(), halfgap), Vec::new());
     let findings = &diagnosis.report.findings;
     let finding = findings.iter().find(|finding| finding.effect == "backlash");
@@ -27,15 +26,9 @@ fn gaps_are_named_with_their_size() {
     for wrong in [0.0, 0.1] {
         for halfgap in [0.003, 0.006, 0.01] {
             let (diagnosis, ratio) = found(halfgap, wrong);
-            assert!(
-                (ratio - 1.0).abs() < 0.1,
-                "{ratio} of {halfgap}, links wrong by {wrong}"
-            );
+            assert!((ratio - 1.0).abs() < 0.1, "{ratio} of {halfgap}, links wrong by {wrong}");
             let on = effects_on(&diagnosis, "turn");
-            assert!(
-                !on.contains(&"actuation_delay") && !on.contains(&"joint_elasticity"),
-                "{on:?}"
-            );
+            assert!(!on.contains(&"actuation_delay") && !on.contains(&"joint_elasticity"), "{on:?}");
         }
     }
 }
@@ -64,10 +57,7 @@ fn a_gap_with_rounded_ends_is_known_to_be_larger_than_it_seems() {
             let diagnosis = diagnosed(&trio(), &trio(), &machine, Vec::new());
             let what = format!("{part} {halfgap}: {:?}", sentences(&diagnosis));
             let on = effects_on(&diagnosis, "turn");
-            assert!(
-                on.contains(&"rotor_inertia") && !on.contains(&"inertial_parameters"),
-                "{what}"
-            );
+            assert!(on.contains(&"rotor_inertia") && !on.contains(&"inertial_parameters"), "{what}");
             let mut gaps = diagnosis.report.findings.iter();
             if let Some(gap) = gaps.find(|finding| finding.effect == "backlash") {
                 let [low, high] = gap.parameters["halfgap"].ci95;

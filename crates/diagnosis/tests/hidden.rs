@@ -61,11 +61,7 @@ fn a_load_in_one_recording_is_no_other_signal() {
         baseline_friction(motion, tau);
     };
     let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
-    assert!(
-        diagnosis.report.not_diagnosed.is_empty(),
-        "{:?}",
-        diagnosis.report.not_diagnosed
-    );
+    assert!(diagnosis.report.not_diagnosed.is_empty(), "{:?}", diagnosis.report.not_diagnosed);
 }
 
 /// The torques that the held-out recording commands are several times as large as those of the training recordings, in which the
@@ -88,9 +84,7 @@ fn a_torque_limit_far_below_the_held_out_torques() {
     let mut findings = diagnosis.report.findings.iter();
     let is_limit = |finding: &&diagnosis::Finding| finding.effect == "torque_saturation";
     let found = findings.find(|finding| is_limit(finding) && finding.joint.as_deref() == Some("shoulder"));
-    let found = found
-        .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
-        .parameters["limit"];
+    let found = found.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))).parameters["limit"];
     assert!((found.value / limit - 1.0).abs() < 0.03, "{found:?}");
 }
 
@@ -117,9 +111,5 @@ fn the_level_of_friction_beside_viscous_friction_that_noise_hides() {
     }
     assert!(seen, "{:?}", sentences(&diagnosis));
     let is_viscous = |finding: &diagnosis::Finding| finding.effect == "viscous_friction";
-    assert!(
-        !diagnosis.report.findings.iter().any(is_viscous),
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert!(!diagnosis.report.findings.iter().any(is_viscous), "{:?}", sentences(&diagnosis));
 }

@@ -25,10 +25,7 @@ fn wanted(list: &[(&str, Option<&str>)]) -> Vec<Wanted> {
 }
 
 fn tried(list: &[(&str, Option<&str>)]) -> Result<Diagnosis, DiagnosisError> {
-    let options = Options {
-        only: Some(wanted(list)),
-        ..Options::default()
-    };
+    let options = Options { only: Some(wanted(list)), ..Options::default() };
     diagnosed_with(&trio(), &trio(), &injected, &options)
 }
 
@@ -46,12 +43,7 @@ fn the_right_effects_explain_the_recordings_with_their_sizes() {
         ("stribeck_friction", Some("elbow")),
     ];
     let diagnosis = tried(&right).expect("it can be fitted");
-    let mut found: Vec<_> = diagnosis
-        .report
-        .findings
-        .iter()
-        .map(|f| (f.effect, f.joint.as_deref()))
-        .collect();
+    let mut found: Vec<_> = diagnosis.report.findings.iter().map(|f| (f.effect, f.joint.as_deref())).collect();
     let mut right = right;
     found.sort_unstable();
     right.sort_unstable();
@@ -63,17 +55,9 @@ fn the_right_effects_explain_the_recordings_with_their_sizes() {
         ("torque_ripple", "amplitude", 0.8),
         ("torque_ripple", "periods", 23.0),
     ] {
-        let finding = diagnosis
-            .report
-            .findings
-            .iter()
-            .find(|f| f.effect == effect)
-            .expect("it is there");
+        let finding = diagnosis.report.findings.iter().find(|f| f.effect == effect).expect("it is there");
         let value = finding.parameters[parameter].value;
-        assert!(
-            (value / truth - 1.0).abs() < 0.05,
-            "{effect} {parameter}: {value} instead of {truth}"
-        );
+        assert!((value / truth - 1.0).abs() < 0.05, "{effect} {parameter}: {value} instead of {truth}");
     }
     for joint in ["shoulder", "elbow"] {
         let [nominal, augmented] = error(&diagnosis, joint);
@@ -105,24 +89,15 @@ fn unknown_effects_and_joints_are_refused() {
             vec![("stiction", Some("elbow"))],
             "stiction on elbow: no such effect is in the catalogue, which has viscous_friction, ",
         ),
-        (
-            vec![("coulomb_fricton", Some("elbow"))],
-            "did you mean coulomb_friction?",
-        ),
-        (
-            vec![("Coulomb friction", Some("elbow"))],
-            "did you mean coulomb_friction?",
-        ),
+        (vec![("coulomb_fricton", Some("elbow"))], "did you mean coulomb_friction?"),
+        (vec![("Coulomb friction", Some("elbow"))], "did you mean coulomb_friction?"),
         (
             vec![("spring", Some("elbw"))],
             "the robot has no joint \"elbw\"; did you mean \"elbow\"? its joints are turn, shoulder, elbow",
         ),
         (vec![("spring", None)], "acts on a joint; give spring:JOINT"),
         (vec![("payload", Some("elbow"))], "acts on the whole arm"),
-        (
-            vec![("spring", Some("elbow")), ("spring", Some("elbow"))],
-            "given twice",
-        ),
+        (vec![("spring", Some("elbow")), ("spring", Some("elbow"))], "given twice"),
     ] {
         let error = tried(&list).expect_err("it is refused").to_string();
         assert!(error.contains(part), "{error}");

@@ -16,15 +16,8 @@ fn known() -> Vec<Effect> {
         let viscous = Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.4);
         [coulomb, viscous]
     };
-    let spring = Effect::of(&Spring)
-        .on("shoulder")
-        .with("stiffness", 8.0)
-        .with("rest", 0.2);
-    ["turn", "shoulder", "elbow"]
-        .into_iter()
-        .flat_map(on)
-        .chain([spring])
-        .collect()
+    let spring = Effect::of(&Spring).on("shoulder").with("stiffness", 8.0).with("rest", 0.2);
+    ["turn", "shoulder", "elbow"].into_iter().flat_map(on).chain([spring]).collect()
 }
 
 fn with_spring(motion: &Motion, tau: &mut [f64]) {
@@ -44,9 +37,7 @@ fn known_friction_holds_a_joint_at_rest() {
             arm.inverse_dynamics(&mut Workspace::new(&arm), &motion.q, &motion.qd, &motion.qdd, tau);
             let mut friction = [0.0; 3];
             baseline_friction(motion, &mut friction);
-            (0..3)
-                .filter(|&joint| joint != SHOULDER)
-                .for_each(|joint| tau[joint] += friction[joint]);
+            (0..3).filter(|&joint| joint != SHOULDER).for_each(|joint| tau[joint] += friction[joint]);
             tau[SHOULDER] += 8.0 * (still - 0.2) + 0.5;
         } else {
             with_spring(motion, tau);
@@ -56,11 +47,7 @@ fn known_friction_holds_a_joint_at_rest() {
     let diagnosis = diagnosed(&arm, &arm, &machine, known());
     let resting = diagnosis.report.fit["shoulder"].held_out_nrmse_resting;
     assert!(resting.is_some_and(|error| error < 0.01), "{resting:?}");
-    let notes: Vec<&String> = diagnosis
-        .remarks
-        .iter()
-        .filter(|note| note.contains("a brake"))
-        .collect();
+    let notes: Vec<&String> = diagnosis.remarks.iter().filter(|note| note.contains("a brake")).collect();
     assert!(notes.is_empty(), "{notes:?}");
 }
 
@@ -73,12 +60,7 @@ fn a_torque_scale_multiplies_known_effects() {
         tau[SHOULDER] *= 1.2;
     };
     let diagnosis = diagnosed(&arm, &arm, &machine, known());
-    assert_eq!(
-        named(&diagnosis),
-        [("torque_scale", Some("shoulder"))],
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert_eq!(named(&diagnosis), [("torque_scale", Some("shoulder"))], "{:?}", sentences(&diagnosis));
     assert_eq!(effects_on(&diagnosis, "shoulder"), ["torque_scale"]);
     let factor = diagnosis.report.findings[0].parameters["factor"].value;
     assert!((factor - 1.2).abs() < 0.01, "{factor}");
@@ -93,12 +75,7 @@ fn less_friction_than_known_is_unexplained() {
         tau[ELBOW] -= 0.4 * motion.qd[ELBOW].signum();
     };
     let diagnosis = diagnosed(&arm, &arm, &machine, known());
-    assert_eq!(
-        diagnosis.report.verdict,
-        Verdict::Unexplained,
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert_eq!(diagnosis.report.verdict, Verdict::Unexplained, "{:?}", sentences(&diagnosis));
     let open: Vec<&str> = diagnosis.report.unexplained.iter().map(|open| &*open.joint).collect();
     assert_eq!(open, ["elbow"]);
     let next = &diagnosis.report.unexplained[0].next;
@@ -120,11 +97,7 @@ fn without_gravity(model: &Arm, robot: &Arm) -> Diagnosis {
 /// Torques without gravity are no reason to doubt the masses of all links. The vertical axis, which gravity does not load, is diagnosed.
 #[test]
 fn torques_without_gravity_are_recognised() {
-    let payload = Inertia {
-        mass: 0.5,
-        com: Vector3::new(0.0, 0.0, 0.1),
-        tensor: Matrix3::identity() * 1e-3,
-    };
+    let payload = Inertia { mass: 0.5, com: Vector3::new(0.0, 0.0, 0.1), tensor: Matrix3::identity() * 1e-3 };
     for robot in [trio(), trio().with_payload(&payload)] {
         let diagnosis = without_gravity(&trio(), &robot);
         let [not_diagnosed] = &diagnosis.report.not_diagnosed[..] else {
@@ -139,21 +112,11 @@ fn torques_without_gravity_are_recognised() {
     // On a base that is not level, gravity loads the column, too, if only a little.
     let slope = trio().with_gravity(Vector3::new(0.3, 0.0, -9.8));
     let diagnosis = without_gravity(&slope, &slope);
-    let not_diagnosed: Vec<_> = diagnosis
-        .report
-        .not_diagnosed
-        .iter()
-        .map(|group| &group.joints[..])
-        .collect();
+    let not_diagnosed: Vec<_> = diagnosis.report.not_diagnosed.iter().map(|group| &group.joints[..]).collect();
     assert_eq!(not_diagnosed, [["turn", "shoulder", "elbow"]]);
     assert_eq!(diagnosis.report.verdict, Verdict::NotEnoughData);
     // A base that was mounted on a wall has gravity in another direction.
     let wall = trio().with_gravity(Vector3::new(9.81, 0.0, 0.0));
-    let diagnosis = diagnosed(
-        &trio(),
-        &wall,
-        &|motion, tau| baseline_friction(motion, tau),
-        Vec::new(),
-    );
+    let diagnosis = diagnosed(&trio(), &wall, &|motion, tau| baseline_friction(motion, tau), Vec::new());
     assert_eq!(diagnosis.report.not_diagnosed, []);
 }

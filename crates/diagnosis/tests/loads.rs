@@ -94,16 +94,8 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
 
     let diagnosis = diagnosed([0.0, 0.0, 0.8, 0.8], |_, _| true, nothing);
     assert!(!is_reported(&diagnosis));
-    let payload = diagnosis
-        .report
-        .findings
-        .iter()
-        .find(|finding| finding.effect == "payload");
-    assert!(
-        payload.is_some_and(|payload| payload.parameters.contains_key("onset")),
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    let payload = diagnosis.report.findings.iter().find(|finding| finding.effect == "payload");
+    assert!(payload.is_some_and(|payload| payload.parameters.contains_key("onset")), "{:?}", sentences(&diagnosis));
 
     // A load that was put down is no effect of the model today.
     let diagnosis = diagnosed([0.8, 0.8, 0.0, 0.0], |_, _| true, nothing);
@@ -119,10 +111,7 @@ fn what_an_effect_explains_is_not_reported_as_another_load() {
 /// A load that is put down within a recording is found with the time.
 #[test]
 fn a_load_that_is_put_down_within_a_recording() {
-    for (end, recordings) in [
-        (start(1) + 7.0, &["a", "b"][..]),
-        (start(2) + 7.0, &["a", "b", "c"][..]),
-    ] {
+    for (end, recordings) in [(start(1) + 7.0, &["a", "b"][..]), (start(2) + 7.0, &["a", "b", "c"][..])] {
         put_down_at(end, recordings);
     }
 }
@@ -143,10 +132,7 @@ fn put_down_at(end: f64, recordings: &[&str]) {
     assert_load(&diagnosis, recordings, 0.8);
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
     let until = diagnosis.report.different_load.and_then(|load| load.until);
-    assert!(
-        until.is_some_and(|until| (until - end).abs() < 0.1),
-        "{until:?}, not {end}"
-    );
+    assert!(until.is_some_and(|until| (until - end).abs() < 0.1), "{until:?}, not {end}");
 }
 
 /// A push is no load.
@@ -195,13 +181,9 @@ fn a_push_on_a_joint_at_rest_is_noted() {
         let diagnosis = diagnosed([0.0; 4], |variant, joint| variant != 1 || joint != ELBOW, injected);
         assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
         let notes = diagnosis.remarks.into_iter();
-        notes
-            .filter(|note| note.contains("dry friction explains"))
-            .collect::<Vec<_>>()
+        notes.filter(|note| note.contains("dry friction explains")).collect::<Vec<_>>()
     };
     assert!(notes(0.0).is_empty());
-    let [note] = &notes(15.0)[..] else {
-        panic!("one note is expected")
-    };
+    let [note] = &notes(15.0)[..] else { panic!("one note is expected") };
     assert!(note.starts_with("b: elbow rests between 1006."), "{note}");
 }

@@ -47,30 +47,20 @@ fn a_drive_that_compensates_light_links_is_named_with_them() {
 /// background. If all others are exact, a smaller deviation is also named.
 #[test]
 fn a_torque_constant_beyond_the_tolerance_of_the_others_is_named() {
-    for (factors, expected) in [
-        ([1.05, 0.84, 0.95], Some(0.84)),
-        ([1.0, 0.95, 1.0], Some(0.95)),
-        ([1.05, 1.04, 0.95], None),
-    ] {
+    for (factors, expected) in
+        [([1.05, 0.84, 0.95], Some(0.84)), ([1.0, 0.95, 1.0], Some(0.95)), ([1.05, 1.04, 0.95], None)]
+    {
         let injected = |motion: &mut Motion, tau: &mut [f64]| {
             baseline_friction(motion, tau);
             tau.iter_mut().zip(factors).for_each(|(tau, factor)| *tau *= factor);
         };
         let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
-        let scales: Vec<_> = diagnosis
-            .report
-            .findings
-            .iter()
-            .filter(|f| f.effect == "torque_scale")
-            .collect();
+        let scales: Vec<_> = diagnosis.report.findings.iter().filter(|f| f.effect == "torque_scale").collect();
         let named: Vec<_> = scales.iter().filter_map(|finding| finding.joint.as_deref()).collect();
         assert_eq!(named, Vec::from_iter(expected.map(|_| "shoulder")), "{factors:?}");
         for (finding, factor) in scales.iter().zip(expected) {
             let found = &finding.parameters["factor"];
-            assert!(
-                (found.value / factor - 1.0).abs() < 0.03,
-                "{found:?} instead of {factor}"
-            );
+            assert!((found.value / factor - 1.0).abs() < 0.03, "{found:?} instead of {factor}");
         }
     }
 }
@@ -82,17 +72,9 @@ fn exact_torque_constants_name_each_scale_once() {
         baseline_friction(motion, tau);
         tau[1] *= 0.95;
     };
-    let options = Options {
-        torque_accuracy: Some(0.0),
-        ..Options::default()
-    };
+    let options = Options { torque_accuracy: Some(0.0), ..Options::default() };
     let diagnosis = diagnosed_with(&trio(), &trio(), &injected, &options).expect("it can be diagnosed");
-    assert_eq!(
-        support::named(&diagnosis),
-        [("torque_scale", Some("shoulder"))],
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert_eq!(support::named(&diagnosis), [("torque_scale", Some("shoulder"))], "{:?}", sentences(&diagnosis));
 }
 
 /// A forearm that is too heavy for the URDF hides most of a torque constant of the shoulder that is too small. The recordings determine
@@ -105,10 +87,7 @@ fn a_torque_constant_that_a_wrong_mass_hides_is_named() {
         tau[1] *= 0.765;
     };
     let found = named(&robot, &injected);
-    let expected = [
-        of("link_inertial_error", Some("elbow")),
-        of("torque_scale", Some("shoulder")),
-    ];
+    let expected = [of("link_inertial_error", Some("elbow")), of("torque_scale", Some("shoulder"))];
     assert_eq!(found, expected);
 }
 
@@ -137,20 +116,10 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
         let mut body = trio().joints()[link].inertia;
         body.com += Vector3::from(off);
         let robot = trio().with_link_inertia(link, body);
-        let diagnosis = diagnosed(
-            &trio(),
-            &robot,
-            &|motion, tau| baseline_friction(motion, tau),
-            Vec::new(),
-        );
+        let diagnosis = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), Vec::new());
         let name = trio().joints()[link].name.clone();
         let found = support::named(&diagnosis);
-        assert_eq!(
-            found,
-            [("inertial_parameters", Some(name.as_str()))],
-            "{:?}",
-            sentences(&diagnosis)
-        );
+        assert_eq!(found, [("inertial_parameters", Some(name.as_str()))], "{:?}", sentences(&diagnosis));
         let com = &diagnosis.report.inertials[&name].parameters;
         for (key, nominal, off) in [
             ("com_x", trio().joints()[link].inertia.com.x, off[0]),
@@ -158,10 +127,7 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
         ] {
             let [low, high] = com[key].ci95;
             let truth = nominal + off;
-            assert!(
-                low <= truth && truth <= high,
-                "{name} {key}: {low} … {high}, not {truth}"
-            );
+            assert!(low <= truth && truth <= high, "{name} {key}: {low} … {high}, not {truth}");
         }
     }
 }
@@ -171,23 +137,14 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
 #[test]
 fn a_common_factor_has_a_pair_of_links_as_its_alternative() {
     let robot = trio().with_scaled_inertias(0.8);
-    let diagnosis = diagnosed(
-        &trio(),
-        &robot,
-        &|motion, tau| baseline_friction(motion, tau),
-        Vec::new(),
-    );
+    let diagnosis = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), Vec::new());
     let mut findings = diagnosis.report.findings.iter();
     let finding = findings.find(|finding| finding.effect == "inertial_scale");
     let finding = finding.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
     let is_link = |other: &diagnosis::Confusable| other.effect == "link_inertial_error";
     let pairs = &finding.confusable_with_pairs;
     assert!(pairs.iter().any(|pair| pair.iter().all(is_link)), "{pairs:?}");
-    assert!(
-        !finding.confusable_with.iter().any(is_link),
-        "{:?}",
-        finding.confusable_with
-    );
+    assert!(!finding.confusable_with.iter().any(is_link), "{:?}", finding.confusable_with);
 }
 
 /// The diagnosis of a PUMA 560 with dry friction and a payload of `mass` (kg) with this centre of mass. The links have these
@@ -196,9 +153,7 @@ fn loaded(mass: f64, com: [f64; 3], factors: [f64; 6], off: [f64; 3]) -> Diagnos
     const PUMA: &str = include_str!("../../../assets/puma560.urdf");
     let believed = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
     let factors = factors.into_iter().enumerate();
-    let links = factors.fold(believed.clone(), |arm, (link, factor)| {
-        arm.with_scaled_link(link, factor)
-    });
+    let links = factors.fold(believed.clone(), |arm, (link, factor)| arm.with_scaled_link(link, factor));
     let mut upper_arm = links.joints()[1].inertia;
     upper_arm.com += Vector3::from(off);
     let robot = links.with_link_inertia(1, upper_arm).with_payload(&Inertia {
@@ -252,11 +207,7 @@ fn a_special_form_of_wrong_links_is_an_alternative_of_them() {
     let links = findings.iter().find(is_links);
     let links = links.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
     let special = |effect: &str| effect == "link_inertial_error" || effect == "payload";
-    assert!(
-        findings.iter().all(|finding| !special(finding.effect)),
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert!(findings.iter().all(|finding| !special(finding.effect)), "{:?}", sentences(&diagnosis));
     let is_last = |joint: Option<&str>| joint.is_none_or(|joint| joint == "joint6");
     let mut alternatives = links.confusable_with.iter();
     assert!(
@@ -304,14 +255,8 @@ fn wrong_everywhere(seed: u64, strength: f64, payload: f64) -> Diagnosis {
 fn a_payload_at_the_centre_of_a_wrist_is_an_alternative_of_wrong_links() {
     let diagnosis = wrong_everywhere(8, 0.03, 2.5);
     let findings = &diagnosis.report.findings;
-    assert!(
-        findings.iter().all(|finding| finding.effect != "payload"),
-        "{:?}",
-        sentences(&diagnosis)
-    );
-    let links = findings
-        .iter()
-        .filter(|finding| finding.effect == "inertial_parameters");
+    assert!(findings.iter().all(|finding| finding.effect != "payload"), "{:?}", sentences(&diagnosis));
+    let links = findings.iter().filter(|finding| finding.effect == "inertial_parameters");
     let mut alternatives = links.flat_map(|links| &links.confusable_with);
     assert!(alternatives.any(|other| other.effect == "payload"), "{findings:?}");
 }
@@ -343,19 +288,13 @@ fn a_determined_moment_of_a_load_is_exported() {
     let payload = Payload::inertia(payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))));
     assert!((payload.mass / load.mass - 1.0).abs() < 0.02, "{payload:?}");
     assert!((payload.tensor[(2, 2)] / 1.2e-2 - 1.0).abs() < 0.1, "{payload:?}");
-    assert!(
-        exists(payload.mass, &(payload.tensor + Matrix3::identity() * 1e-9)),
-        "{payload:?}"
-    );
+    assert!(exists(payload.mass, &(payload.tensor + Matrix3::identity() * 1e-9)), "{payload:?}");
     let again = diagnosed(&arm, &robot, &injected, diagnosis.effects.clone());
     exports_what_it_reports(&diagnosis, &again, 0.05);
     for (joint, fit) in &diagnosis.report.fit {
         let exported = again.report.fit[joint].held_out_nrmse_nominal.expect("it is moved");
         let reported = fit.held_out_nrmse_augmented.expect("it is moved");
-        assert!(
-            (exported - reported).abs() < 2e-3,
-            "{joint}: {exported} instead of {reported}"
-        );
+        assert!((exported - reported).abs() < 2e-3, "{joint}: {exported} instead of {reported}");
     }
 }
 
@@ -363,10 +302,7 @@ fn a_determined_moment_of_a_load_is_exported() {
 #[test]
 fn a_placeholder_is_not_believed() {
     let placeholder = |arm: Arm, link: usize| {
-        let body = Inertia {
-            com: Vector3::zeros(),
-            ..arm.joints()[link].inertia
-        };
+        let body = Inertia { com: Vector3::zeros(), ..arm.joints()[link].inertia };
         arm.with_link_inertia(link, body)
     };
     let urdf = support::TRIO.replace("</robot>", "<link name=\"tool\"/><joint name=\"tip\" type=\"fixed\"><parent link=\"fore\"/><child link=\"tool\"/><origin xyz=\"0.3 0 0\"/></joint></robot>");
@@ -375,19 +311,13 @@ fn a_placeholder_is_not_believed() {
     let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
     let diagnosis = diagnosed(&believed, &robot, &friction, Vec::new());
     let named = support::named(&diagnosis);
-    assert!(
-        named.iter().all(|(effect, _)| *effect == "inertial_parameters"),
-        "{named:?}"
-    );
+    assert!(named.iter().all(|(effect, _)| *effect == "inertial_parameters"), "{named:?}");
     let remarks = diagnosis.remarks.join("; ");
     assert!(remarks.contains("exactly at the joint on upper and fore"), "{remarks}");
 
     // An accuracy of the URDF does not make a placeholder true; an exact URDF does.
     for (accuracy, is_noted) in [(0.1, true), (0.0, false)] {
-        let options = Options {
-            urdf_accuracy: Some(accuracy),
-            ..Options::default()
-        };
+        let options = Options { urdf_accuracy: Some(accuracy), ..Options::default() };
         let stated = diagnosed_with(&believed, &robot, &friction, &options).expect("it can be diagnosed");
         let has_note = stated.remarks.join("; ").contains("exactly at the joint");
         assert_eq!(has_note, is_noted, "{accuracy}");

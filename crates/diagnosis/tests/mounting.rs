@@ -11,38 +11,20 @@ use support::{Motion, TRIO, baseline_friction, diagnosed, inputs, named, recorde
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
 fn mounted(degrees: f64) -> Diagnosis {
     let robot = trio().with_turned_base(Vector3::new(0.6, 0.8, 0.0), degrees.to_radians());
-    diagnosed(
-        &trio(),
-        &robot,
-        &|motion, tau| baseline_friction(motion, tau),
-        Vec::new(),
-    )
+    diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), Vec::new())
 }
 
 #[test]
 fn a_base_on_a_slope_a_wall_or_the_ceiling_is_found() {
     for degrees in [12.0, 30.0, 45.0, 90.0, 180.0] {
         let diagnosis = mounted(degrees);
-        assert_eq!(
-            named(&diagnosis),
-            [("gravity_misalignment", None)],
-            "{degrees}: {:?}",
-            sentences(&diagnosis)
-        );
-        let found = diagnosis
-            .report
-            .findings
-            .iter()
-            .find(|finding| finding.effect == "gravity_misalignment");
+        assert_eq!(named(&diagnosis), [("gravity_misalignment", None)], "{degrees}: {:?}", sentences(&diagnosis));
+        let found = diagnosis.report.findings.iter().find(|finding| finding.effect == "gravity_misalignment");
         let angle = found.expect("it is found").parameters["angle"];
         let [low, high] = angle.ci95.map(f64::to_degrees);
         assert!((low..=high).contains(&degrees), "{degrees}: {low} to {high}");
         assert!(high - low < 0.05 * degrees + 0.5, "{degrees}: {low} to {high}");
-        assert!(
-            diagnosis.report.unexplained.is_empty(),
-            "{degrees}: {:?}",
-            diagnosis.report.unexplained
-        );
+        assert!(diagnosis.report.unexplained.is_empty(), "{degrees}: {:?}", diagnosis.report.unexplained);
     }
 }
 
@@ -53,12 +35,7 @@ fn a_known_wall_is_not_found_again() {
     let known = mounted(90.0).effects;
     let again = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), known);
     assert!(named(&again).is_empty(), "{:?}", sentences(&again));
-    let worst = again
-        .report
-        .fit
-        .values()
-        .filter_map(|fit| fit.held_out_nrmse_nominal)
-        .fold(0.0, f64::max);
+    let worst = again.report.fit.values().filter_map(|fit| fit.held_out_nrmse_nominal).fold(0.0, f64::max);
     assert!(worst < 0.02, "{worst}");
 }
 
@@ -70,28 +47,13 @@ fn a_tool_that_is_drawn_and_not_mounted_is_named_beside_a_wrong_link() {
 <inertia ixx="0.002" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.001"/></inertial></link></robot>"#;
     let drawn = Arm::from_urdf_text(&TRIO.replace("</robot>", tool), "trio.urdf").expect("it is an arm");
     let robot = trio().with_scaled_link(1, 0.9);
-    let diagnosis = diagnosed(
-        &drawn,
-        &robot,
-        &|motion, tau| baseline_friction(motion, tau),
-        Vec::new(),
-    );
-    let payload = diagnosis
-        .report
-        .findings
-        .iter()
-        .find(|finding| finding.effect == "payload");
-    let parameters = &payload
-        .unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)))
-        .parameters;
+    let diagnosis = diagnosed(&drawn, &robot, &|motion, tau| baseline_friction(motion, tau), Vec::new());
+    let payload = diagnosis.report.findings.iter().find(|finding| finding.effect == "payload");
+    let parameters = &payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))).parameters;
     let [low, high] = parameters["mass"].ci95;
     assert!(low < -0.9 && -0.9 < high && high - low < 0.3, "{low} to {high}");
     for (key, drawn) in [("com_x", 0.02), ("com_y", 0.01), ("com_z", 0.06)] {
-        assert!(
-            (parameters[key].value - drawn).abs() < 1e-9,
-            "{key}: {}",
-            parameters[key].value
-        );
+        assert!((parameters[key].value - drawn).abs() < 1e-9, "{key}: {}", parameters[key].value);
     }
 }
 
@@ -99,11 +61,7 @@ fn a_tool_that_is_drawn_and_not_mounted_is_named_beside_a_wrong_link() {
 #[test]
 fn a_tool_that_is_not_mounted_is_named_beside_links_that_are_all_wrong() {
     const PUMA: &str = include_str!("../../../assets/puma560.urdf");
-    let tool = arm::Inertia {
-        mass: 0.9,
-        com: Vector3::new(0.01, 0.02, 0.08),
-        tensor: arm::Matrix3::identity() * 2e-3,
-    };
+    let tool = arm::Inertia { mass: 0.9, com: Vector3::new(0.01, 0.02, 0.08), tensor: arm::Matrix3::identity() * 2e-3 };
     let shifts = [
         [1.06, 3.0, -4.0],
         [0.94, -4.0, 5.0],
@@ -127,15 +85,8 @@ fn a_tool_that_is_not_mounted_is_named_beside_links_that_are_all_wrong() {
     let diagnosis = diagnosed(&drawn, &robot, &injected, Vec::new());
     let named = named(&diagnosis);
     assert!(named.contains(&("payload", None)), "{:?}", sentences(&diagnosis));
-    assert!(
-        named.iter().all(|(effect, _)| *effect != "link_inertial_error"),
-        "{named:?}"
-    );
-    let payload = diagnosis
-        .report
-        .findings
-        .iter()
-        .find(|finding| finding.effect == "payload");
+    assert!(named.iter().all(|(effect, _)| *effect != "link_inertial_error"), "{named:?}");
+    let payload = diagnosis.report.findings.iter().find(|finding| finding.effect == "payload");
     let [low, high] = payload.expect("it is named").parameters["mass"].ci95;
     assert!(low < -0.9 && -0.9 < high && high < -0.3, "{low} to {high}");
 }
@@ -143,9 +94,7 @@ fn a_tool_that_is_not_mounted_is_named_beside_links_that_are_all_wrong() {
 /// The joints that are not diagnosed, with the reasons.
 fn not_diagnosed(diagnosis: &Diagnosis) -> String {
     let groups = diagnosis.report.not_diagnosed.iter();
-    let said: Vec<String> = groups
-        .map(|group| format!("{}: {}", group.joints.join(", "), group.because))
-        .collect();
+    let said: Vec<String> = groups.map(|group| format!("{}: {}", group.joints.join(", "), group.because)).collect();
     said.join("\n")
 }
 
@@ -184,24 +133,13 @@ fn channels_without_torque_are_omitted() {
         .collect();
     let coarse = diagnose(&trio(), &inputs(&rounded), &Options::default(), &|_| {}).expect("it can be diagnosed");
     let reasons = not_diagnosed(&coarse);
-    assert!(
-        reasons.contains("elbow: the torque channel shows only 5 different values"),
-        "{reasons}"
-    );
+    assert!(reasons.contains("elbow: the torque channel shows only 5 different values"), "{reasons}");
     let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
     let reasons = not_diagnosed(&diagnosis);
-    assert!(
-        reasons.contains("elbow: the torque channel shows one and the same value"),
-        "{reasons}"
-    );
+    assert!(reasons.contains("elbow: the torque channel shows one and the same value"), "{reasons}");
     let friction = |joint: &str| {
-        diagnosis
-            .report
-            .findings
-            .iter()
-            .filter(|finding| finding.joint.as_deref() == Some(joint))
-            .count()
+        diagnosis.report.findings.iter().filter(|finding| finding.joint.as_deref() == Some(joint)).count()
     };
     assert_eq!([friction("turn"), friction("shoulder"), friction("elbow")], [2, 2, 0]);
 }
@@ -243,11 +181,7 @@ fn no_size_of_a_payload_is_promised_on_a_short_arm_whose_links_are_wrong() {
     }
     let injected = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
     let diagnosis = diagnosed(&believed, &trio(), &injected, Vec::new());
-    let entry = diagnosis
-        .report
-        .not_observable
-        .iter()
-        .find(|entry| entry.effect == "payload");
+    let entry = diagnosis.report.not_observable.iter().find(|entry| entry.effect == "payload");
     let entry = entry.unwrap_or_else(|| panic!("{:?}", diagnosis.report.not_observable));
     assert!(entry.would_be_seen_above.is_empty(), "{entry:?}");
 }

@@ -11,10 +11,7 @@ use support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular
 use torque::Reference;
 
 fn proposed(injected: support::Injected<'_>) -> (Diagnosis, NextExperiment) {
-    let options = Options {
-        next: true,
-        ..Options::default()
-    };
+    let options = Options { next: true, ..Options::default() };
     let diagnosis = diagnosed_with(&trio(), &trio(), injected, &options).expect("it can be diagnosed");
     let next = diagnosis.report.next_experiment.clone().expect("it was asked for");
     (diagnosis, next)
@@ -38,13 +35,7 @@ fn made(reference: &Reference, seconds: f64, injected: support::Injected<'_>) ->
     let along = |motion: &mut Motion, tau: &mut [f64]| {
         let mut wanted = torque::Motion::new(3);
         reference.at(motion.time, &mut wanted);
-        *motion = Motion {
-            time: motion.time,
-            clock: motion.clock,
-            q: wanted.q,
-            qd: wanted.qd,
-            qdd: wanted.qdd,
-        };
+        *motion = Motion { time: motion.time, clock: motion.clock, q: wanted.q, qd: wanted.qd, qdd: wanted.qdd };
         let arm = trio();
         let mut workspace = arm::Workspace::new(&arm);
         arm.inverse_dynamics(&mut workspace, &motion.q, &motion.qd, &motion.qdd, tau);
@@ -56,14 +47,8 @@ fn made(reference: &Reference, seconds: f64, injected: support::Injected<'_>) ->
 #[test]
 fn a_faster_motion_distinguishes_viscous_friction_from_drag() {
     let (diagnosis, next) = proposed(&friction);
-    assert!(
-        is_confused(&diagnosis, "viscous_friction", "quadratic_drag"),
-        "{next:#?}"
-    );
-    let listed = next
-        .separates
-        .iter()
-        .filter(|pair| pair.rival.effect == "quadratic_drag");
+    assert!(is_confused(&diagnosis, "viscous_friction", "quadratic_drag"), "{next:#?}");
+    let listed = next.separates.iter().filter(|pair| pair.rival.effect == "quadratic_drag");
     assert!(listed.clone().count() > 0, "{next:#?}");
     for pair in listed {
         assert!(pair.after > pair.needed && pair.after > pair.before, "{pair:?}");
@@ -92,10 +77,7 @@ fn a_motion_is_predicted_beside_links_that_are_all_wrong() {
         body.com += shift * arm::Vector3::new(1.0, -1.0, 1.0);
         believed = believed.with_link_inertia(link, body).with_scaled_link(link, factor);
     }
-    let options = Options {
-        next: true,
-        ..Options::default()
-    };
+    let options = Options { next: true, ..Options::default() };
     let diagnosis = diagnosed_with(&believed, &trio(), &friction, &options).expect("it can be diagnosed");
     assert!(!diagnosis.report.inertials.is_empty(), "no link is wrong");
     assert!(is_confused(&diagnosis, "viscous_friction", "quadratic_drag"));
@@ -104,11 +86,7 @@ fn a_motion_is_predicted_beside_links_that_are_all_wrong() {
     let is_drag = |pair: &&diagnosis::NotSeparated| pair.rival.effect == "quadratic_drag";
     let predicted = [Obstacle::OutOfReach, Obstacle::AnotherMotion, Obstacle::SameTorque];
     let is_any_predicted = next.separates.iter().any(|pair| pair.rival.effect == "quadratic_drag")
-        || next
-            .not_separated
-            .iter()
-            .filter(is_drag)
-            .any(|pair| predicted.contains(&pair.kind));
+        || next.not_separated.iter().filter(is_drag).any(|pair| predicted.contains(&pair.kind));
     assert!(is_any_predicted, "{next:#?}");
     for seen in &next.shows {
         let is_an_angle = seen.effect == "encoder_offset";
@@ -128,32 +106,14 @@ fn a_motion_stays_within_the_limits() {
         motion.at(f64::from(k) / 1e3, &mut at);
         arm.inverse_dynamics(&mut workspace, &at.q, &at.qd, &at.qdd, &mut tau);
         for (j, joint) in arm.joints().iter().enumerate() {
-            assert!(
-                (joint.limits.lower..=joint.limits.upper).contains(&at.q[j]),
-                "{} {}",
-                joint.name,
-                at.q[j]
-            );
-            assert!(
-                at.qd[j].abs() <= 0.85 * joint.limits.velocity,
-                "{} {}",
-                joint.name,
-                at.qd[j]
-            );
-            assert!(
-                tau[j].abs() + 2.5 <= 0.9 * joint.limits.effort,
-                "{} {}",
-                joint.name,
-                tau[j]
-            );
+            assert!((joint.limits.lower..=joint.limits.upper).contains(&at.q[j]), "{} {}", joint.name, at.q[j]);
+            assert!(at.qd[j].abs() <= 0.85 * joint.limits.velocity, "{} {}", joint.name, at.qd[j]);
+            assert!(tau[j].abs() + 2.5 <= 0.9 * joint.limits.effort, "{} {}", joint.name, tau[j]);
         }
     }
     for joint in &next.limits {
         assert!(joint.position_allowed[0] <= joint.position[0] && joint.position[1] <= joint.position_allowed[1]);
-        assert!(
-            joint.velocity <= joint.velocity_allowed && joint.torque <= joint.torque_allowed,
-            "{joint:?}"
-        );
+        assert!(joint.velocity <= joint.velocity_allowed && joint.torque <= joint.torque_allowed, "{joint:?}");
     }
     // It begins and ends at rest.
     for time in [0.0, 25.0] {
@@ -163,10 +123,7 @@ fn a_motion_stays_within_the_limits() {
     // For a weak and slow arm, a motion that it can perform is proposed.
     let weak = support::TRIO.replace("effort=\"200\" velocity=\"5\"", "effort=\"45\" velocity=\"1.5\"");
     let weak = arm::Arm::from_urdf_text(&weak, "weak.urdf").expect("it is an arm");
-    let options = Options {
-        next: true,
-        ..Options::default()
-    };
+    let options = Options { next: true, ..Options::default() };
     let diagnosis = diagnosed_with(&weak, &weak, &friction, &options).expect("it can be diagnosed");
     let next = diagnosis.report.next_experiment.expect("it was asked for");
     for joint in &next.limits {
@@ -181,16 +138,9 @@ fn effects_that_no_motion_distinguishes_have_advice() {
         tau[ELBOW] += if speed > 0.0 { 2.2 } else { -1.1 };
     };
     let (diagnosis, next) = proposed(&asymmetric);
-    assert!(
-        is_confused(&diagnosis, "friction_asymmetry", "torque_offset"),
-        "{:?}",
-        diagnosis.report.findings
-    );
+    assert!(is_confused(&diagnosis, "friction_asymmetry", "torque_offset"), "{:?}", diagnosis.report.findings);
     assert!(!next.separates.iter().any(|pair| pair.rival.effect == "torque_offset"));
-    let pair = next
-        .not_separated
-        .iter()
-        .find(|pair| pair.rival.effect == "torque_offset");
+    let pair = next.not_separated.iter().find(|pair| pair.rival.effect == "torque_offset");
     let pair = pair.expect("it is said");
     assert_eq!(pair.kind, Obstacle::SameTorque);
     assert!(pair.instead.contains("brake"), "{}", pair.instead);
@@ -199,10 +149,7 @@ fn effects_that_no_motion_distinguishes_have_advice() {
 #[test]
 fn the_proposal_does_not_depend_on_the_threads() {
     let of = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| proposed(&friction).0.next)
     };
     assert_eq!(of(1), of(3));
@@ -216,11 +163,7 @@ fn an_offset_beside_larger_friction_has_advice() {
         tau[ELBOW] += 3.0 * motion.qd[ELBOW].signum() + 0.3;
     };
     let (diagnosis, next) = proposed(&offset);
-    assert!(
-        is_confused(&diagnosis, "torque_offset", "friction_asymmetry"),
-        "{:?}",
-        support::sentences(&diagnosis)
-    );
+    assert!(is_confused(&diagnosis, "torque_offset", "friction_asymmetry"), "{:?}", support::sentences(&diagnosis));
     let mut pairs = next.not_separated.iter();
     let pair = pairs.find(|pair| pair.rival.effect == "friction_asymmetry");
     let pair = pair.expect("it is said");
@@ -242,11 +185,7 @@ fn no_motion_is_promised_for_an_offset_with_an_onset() {
     let is_it = |finding: &diagnosis::Confusable, rival: &diagnosis::Confusable| {
         (finding.effect, rival.effect) == ("torque_offset", "friction_asymmetry")
     };
-    assert!(
-        is_confused(&diagnosis, "torque_offset", "friction_asymmetry"),
-        "{:?}",
-        support::sentences(&diagnosis)
-    );
+    assert!(is_confused(&diagnosis, "torque_offset", "friction_asymmetry"), "{:?}", support::sentences(&diagnosis));
     assert!(!next.separates.iter().any(|pair| is_it(&pair.finding, &pair.rival)));
     let pair = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
     let pair = pair.expect("it is said");

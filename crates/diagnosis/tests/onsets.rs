@@ -113,10 +113,7 @@ fn an_effect_requested_with_an_onset_is_fitted_with_it() {
             sets_in,
             ..Wanted::default()
         };
-        let options = Options {
-            only: Some(vec![offset]),
-            ..Options::default()
-        };
+        let options = Options { only: Some(vec![offset]), ..Options::default() };
         let diagnosis = diagnosed_with(&trio(), &trio(), &injected, &options).expect("it can be fitted");
         let parameters = diagnosis.report.findings[0].parameters.clone();
         let onset = parameters.get("onset").map(|onset| onset.value);
@@ -144,21 +141,9 @@ fn a_torque_constant_that_changes_multiplies_the_whole_torque() {
     };
     let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
     let name = trio().joints()[ELBOW].name.clone();
-    let special: Vec<_> = named(&diagnosis)
-        .into_iter()
-        .filter(|(effect, _)| *effect != "rotor_inertia")
-        .collect();
-    assert_eq!(
-        special,
-        [("torque_scale", Some(name.as_str()))],
-        "{:?}",
-        sentences(&diagnosis)
-    );
-    let finding = diagnosis
-        .report
-        .findings
-        .iter()
-        .find(|finding| finding.effect == "torque_scale");
+    let special: Vec<_> = named(&diagnosis).into_iter().filter(|(effect, _)| *effect != "rotor_inertia").collect();
+    assert_eq!(special, [("torque_scale", Some(name.as_str()))], "{:?}", sentences(&diagnosis));
+    let finding = diagnosis.report.findings.iter().find(|finding| finding.effect == "torque_scale");
     let parameters = &finding.expect("it is named").parameters;
     assert!((parameters["factor"].value - 1.2).abs() < 0.01, "{parameters:?}");
 }

@@ -34,10 +34,7 @@ fn is_sized(diagnosis: &diagnosis::Diagnosis, effect: &str, truth: &[(&str, f64)
     let finding = findings.find(|finding| finding.effect == effect).expect("it is found");
     for (key, truth) in truth {
         let found = &finding.parameters[key];
-        assert!(
-            (found.value / truth - 1.0).abs() < tolerance,
-            "{key}: {found:?} instead of {truth}"
-        );
+        assert!((found.value / truth - 1.0).abs() < tolerance, "{key}: {found:?} instead of {truth}");
     }
 }
 
@@ -49,12 +46,7 @@ fn gravity_compensator() {
         tau[SHOULDER] += 14.0 * (motion.q[SHOULDER] + 1.5).sin();
     };
     let diagnosis = check(&injected, &[("gravity_compensator", "shoulder")]);
-    is_sized(
-        &diagnosis,
-        "gravity_compensator",
-        &[("amplitude", 14.0), ("angle", -1.5)],
-        0.05,
-    );
+    is_sized(&diagnosis, "gravity_compensator", &[("amplitude", 14.0), ("angle", -1.5)], 0.05);
 }
 
 /// A linear spring that carries a part of the weight is named as a spring.
@@ -71,24 +63,12 @@ fn a_spring_against_the_weight_is_not_a_gravity_compensator() {
 /// A body at the tool is also a weight, but not one of the shoulder alone.
 #[test]
 fn a_payload_is_not_a_gravity_compensator() {
-    let body = arm::Inertia {
-        mass: 1.0,
-        com: arm::Vector3::new(0.05, 0.0, 0.02),
-        tensor: arm::Matrix3::identity() * 2e-3,
-    };
+    let body =
+        arm::Inertia { mass: 1.0, com: arm::Vector3::new(0.05, 0.0, 0.02), tensor: arm::Matrix3::identity() * 2e-3 };
     let loaded = trio().with_payload(&body);
-    let diagnosis = diagnosed(
-        &trio(),
-        &loaded,
-        &|motion, tau| baseline_friction(motion, tau),
-        Vec::new(),
-    );
+    let diagnosis = diagnosed(&trio(), &loaded, &|motion, tau| baseline_friction(motion, tau), Vec::new());
     let found = names(&diagnosis);
-    assert!(
-        found.contains(&("payload", "the whole arm")),
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert!(found.contains(&("payload", "the whole arm")), "{:?}", sentences(&diagnosis));
     assert!(found.iter().all(|(effect, _)| *effect != "gravity_compensator"));
 }
 
@@ -114,19 +94,9 @@ fn thermal_drift() {
         baseline_friction(motion, tau);
         tau[SHOULDER] += 2.0 * (1.0 + 1.2 * (-time / 25.0).exp()) * motion.qd[SHOULDER].signum();
     });
-    assert_eq!(
-        names(&diagnosis),
-        [("thermal_drift", "shoulder")],
-        "{:?}",
-        sentences(&diagnosis)
-    );
+    assert_eq!(names(&diagnosis), [("thermal_drift", "shoulder")], "{:?}", sentences(&diagnosis));
     // The level contains the baseline of 0.6 N m.
-    is_sized(
-        &diagnosis,
-        "thermal_drift",
-        &[("coulomb", 2.6), ("amplitude", 2.4 / 2.6), ("time_constant", 25.0)],
-        0.15,
-    );
+    is_sized(&diagnosis, "thermal_drift", &[("coulomb", 2.6), ("amplitude", 2.4 / 2.6), ("time_constant", 25.0)], 0.15);
 }
 
 /// Dry friction that does not change with time is not a thermal drift, even if it is by chance a little less in each recording.
@@ -187,10 +157,7 @@ fn a_small_torque_offset_is_not_asymmetric_friction() {
     let mut findings = diagnosis.report.findings.iter();
     let offset = findings.find(|finding| finding.effect == "torque_offset");
     let rivals = offset.map(|offset| &offset.confusable_with).expect("it is named");
-    assert!(
-        rivals.iter().any(|rival| rival.effect == "friction_asymmetry"),
-        "{rivals:?}"
-    );
+    assert!(rivals.iter().any(|rival| rival.effect == "friction_asymmetry"), "{rivals:?}");
 }
 
 /// A torque scale acts at all sizes of the torque, and a limit does not.
@@ -229,27 +196,17 @@ fn a_known_gap_is_compared_with_the_recordings() {
     let known = vec![gap("elbow", 0.01), gap("shoulder", 0.01)];
     let diagnosis = diagnosed(&trio(), &trio(), &injected, known);
     assert!(
-        diagnosis
-            .report
-            .findings
-            .iter()
-            .all(|finding| finding.effect != "backlash"),
+        diagnosis.report.findings.iter().all(|finding| finding.effect != "backlash"),
         "{:?}",
         sentences(&diagnosis)
     );
     let remarks = diagnosis.remarks.join("\n");
-    assert!(
-        remarks.contains("the known backlash on shoulder is not found"),
-        "{remarks}"
-    );
+    assert!(remarks.contains("the known backlash on shoulder is not found"), "{remarks}");
     assert!(!remarks.contains("the known backlash on elbow"), "{remarks}");
 
     let diagnosis = diagnosed(&trio(), &trio(), &injected, vec![gap("elbow", 0.1)]);
     let remarks = diagnosis.remarks.join("\n");
-    assert!(
-        remarks.contains("the known backlash on elbow has another size"),
-        "{remarks}"
-    );
+    assert!(remarks.contains("the known backlash on elbow has another size"), "{remarks}");
 }
 
 /// Known effects on the commanded torque act one after the other: of two limits the lower one counts, and delays add up.
@@ -263,9 +220,7 @@ fn several_known_effects_on_the_commanded_torque_act_one_after_the_other() {
     };
     let nominal = |known: Vec<Effect>| {
         let diagnosis = diagnosed(&trio(), &trio(), &wound_up, known);
-        diagnosis.report.fit["shoulder"]
-            .held_out_nrmse_nominal
-            .expect("it is moved")
+        diagnosis.report.fit["shoulder"].held_out_nrmse_nominal.expect("it is moved")
     };
     let one = nominal(vec![limit(8.0)]);
     for known in [vec![limit(8.0), limit(9.0)], vec![limit(9.0), limit(8.0)]] {
@@ -273,10 +228,7 @@ fn several_known_effects_on_the_commanded_torque_act_one_after_the_other() {
         assert!((one - two).abs() < 1e-9, "{one} with one limit, {two} with two");
     }
     let both = nominal(vec![limit(8.0), late(0.008)]);
-    for known in [
-        vec![late(0.008), limit(8.0)],
-        vec![limit(8.0), late(0.004), late(0.004)],
-    ] {
+    for known in [vec![late(0.008), limit(8.0)], vec![limit(8.0), late(0.004), late(0.004)]] {
         let other = nominal(known);
         assert!((both - other).abs() < 1e-9, "{both} and {other}");
     }
@@ -365,12 +317,7 @@ fn a_large_constant_beside_friction_has_its_alternative() {
     let finding = findings.find(|finding| finding.joint.as_deref() == Some("turn") && pair.contains(&finding.effect));
     let finding = finding.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis)));
     let rivals: Vec<&str> = finding.confusable_with.iter().map(|rival| rival.effect).collect();
-    assert!(
-        pair.iter()
-            .any(|&name| name != finding.effect && rivals.contains(&name)),
-        "{} {rivals:?}",
-        finding.effect
-    );
+    assert!(pair.iter().any(|&name| name != finding.effect && rivals.contains(&name)), "{} {rivals:?}", finding.effect);
 }
 
 /// Every drive has slightly more friction in one direction; it is named from 0.7 % of the torque on.

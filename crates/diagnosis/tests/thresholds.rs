@@ -52,22 +52,12 @@ fn unmodelled_and_ripple(motion: &mut Motion, tau: &mut [f64]) {
 }
 
 /// A field, the factor on it, what is injected, and the name or the dependence that is lost with that factor.
-type Row = (
-    &'static str,
-    f64,
-    fn(&mut Motion, &mut [f64]),
-    (&'static str, &'static str),
-);
+type Row = (&'static str, f64, fn(&mut Motion, &mut [f64]), (&'static str, &'static str));
 
 /// One row for each field. Factors are a tenth, ten or a thousand: it is shown that the field decides, and not where its edge is.
 const ROWS: [Row; 14] = [
     ("tolerance", 10.0, elastic, ("joint_elasticity", "elbow")),
-    (
-        "per_coefficient",
-        10.0,
-        unmodelled,
-        ("own_position_times_speed", "elbow"),
-    ),
+    ("per_coefficient", 10.0, unmodelled, ("own_position_times_speed", "elbow")),
     ("per_onset", 1e3, onset, ("torque_offset", "elbow")),
     ("unit_spread", 0.1, elastic, ("joint_elasticity", "elbow")),
     ("predicted", 10.0, spring_and_ripple, ("spring", "shoulder")),
@@ -75,31 +65,11 @@ const ROWS: [Row; 14] = [
     ("least_share", 10.0, spring_and_ripple, ("torque_ripple", "shoulder")),
     ("least_evidence", 10.0, spring_and_ripple, ("torque_ripple", "shoulder")),
     ("least_beyond", 1e3, spring, ("spring", "shoulder")),
-    (
-        "beside_a_larger",
-        10.0,
-        spring_and_ripple,
-        ("torque_ripple", "shoulder"),
-    ),
+    ("beside_a_larger", 10.0, spring_and_ripple, ("torque_ripple", "shoulder")),
     ("beside_a_certain", 1e3, scale_and_ripple, ("torque_ripple", "shoulder")),
-    (
-        "least_unmodelled_share",
-        1e3,
-        unmodelled,
-        ("own_position_times_speed", "elbow"),
-    ),
-    (
-        "least_unmodelled_evidence",
-        1e3,
-        unmodelled,
-        ("own_position_times_speed", "elbow"),
-    ),
-    (
-        "beside_unmodelled",
-        1e3,
-        unmodelled_and_ripple,
-        ("torque_ripple", "elbow"),
-    ),
+    ("least_unmodelled_share", 1e3, unmodelled, ("own_position_times_speed", "elbow")),
+    ("least_unmodelled_evidence", 1e3, unmodelled, ("own_position_times_speed", "elbow")),
+    ("beside_unmodelled", 1e3, unmodelled_and_ripple, ("torque_ripple", "elbow")),
 ];
 
 /// Whether a report has a finding, or an unexplained residual that depends on something, on a joint.
@@ -122,9 +92,6 @@ fn each_threshold_decides_on_a_name() {
             diagnosis.expect("it can be diagnosed").report
         };
         assert!(has(&report(1.0), what), "{field}: {what:?} is there by default");
-        assert!(
-            !has(&report(factor), what),
-            "{field} × {factor}: {what:?} is still there"
-        );
+        assert!(!has(&report(factor), what), "{field} × {factor}: {what:?} is still there");
     }
 }

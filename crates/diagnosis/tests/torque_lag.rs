@@ -30,10 +30,7 @@ fn recordings(lagging: &[usize]) -> Vec<RegularRecording> {
 }
 
 fn diagnosed(lagging: &[usize], torque_lag: Option<f64>) -> Diagnosis {
-    let options = Options {
-        torque_lag,
-        ..Options::default()
-    };
+    let options = Options { torque_lag, ..Options::default() };
     diagnose(&trio(), &inputs(&recordings(lagging)), &options, &|_| {}).expect("it can be diagnosed")
 }
 
@@ -46,10 +43,7 @@ fn a_lag_of_all_torques_is_removed_and_noted() {
     assert!(named(&found).is_empty(), "{:?}", sentences(&found));
     assert!(found.report.unexplained.is_empty(), "{:?}", found.report.unexplained);
     assert!(found.trace.iter().any(|row| row.action == Action::Lag));
-    let note = found
-        .remarks
-        .iter()
-        .find(|remark| remark.contains("later than the positions"));
+    let note = found.remarks.iter().find(|remark| remark.contains("later than the positions"));
     assert!(note.is_some(), "{:?}", found.remarks);
     for (joint, fit) in &found.report.fit {
         let error = fit.held_out_nrmse_augmented.expect("a recording is held out");
@@ -79,11 +73,7 @@ fn a_stated_lag_is_used() {
 fn a_lag_is_not_a_drive_that_turns_with_two_joints() {
     let found = diagnosed(&[0, 1, 2], Some(0.0));
     for joint in ["turn", "shoulder", "elbow"] {
-        assert!(
-            !effects_on(&found, joint).contains(&"transmission_coupling"),
-            "{:?}",
-            sentences(&found)
-        );
+        assert!(!effects_on(&found, joint).contains(&"transmission_coupling"), "{:?}", sentences(&found));
     }
 }
 
@@ -93,23 +83,13 @@ fn a_short_lag_does_not_change_viscous_friction() {
     let late = |recording: &RegularRecording| recording.without_torque_lag(-0.0015);
     let recordings: Vec<RegularRecording> = recordings(&[]).iter().map(late).collect();
     let found = |torque_lag: Option<f64>| -> (f64, bool) {
-        let options = Options {
-            torque_lag,
-            ..Options::default()
-        };
+        let options = Options { torque_lag, ..Options::default() };
         let found = diagnose(&trio(), &inputs(&recordings), &options, &|_| {}).expect("it can be diagnosed");
         assert!(named(&found).is_empty(), "{:?}", sentences(&found));
         assert_eq!(found.report.torque_lag, None);
-        let is_noted = found
-            .remarks
-            .iter()
-            .any(|remark| remark.contains("later than the positions"));
+        let is_noted = found.remarks.iter().any(|remark| remark.contains("later than the positions"));
         assert_eq!(is_noted, torque_lag.is_none(), "{:?}", found.remarks);
-        let viscous = found
-            .report
-            .findings
-            .iter()
-            .filter(|finding| finding.effect == "viscous_friction");
+        let viscous = found.report.findings.iter().filter(|finding| finding.effect == "viscous_friction");
         let sizes: Vec<_> = viscous.map(|finding| &finding.parameters["coefficient"]).collect();
         assert_eq!(sizes.len(), 3, "{:?}", sentences(&found));
         let off = |size: &&Parameter| (size.value - VISCOUS).abs();

@@ -22,17 +22,12 @@ fn torques_that_only_the_background_explains_are_reported() {
     let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
     let is_named = |joint: &str| {
         let findings = &diagnosis.report.findings;
-        findings
-            .iter()
-            .any(|finding| finding.effect == "torque_scale" && finding.joint.as_deref() == Some(joint))
+        findings.iter().any(|finding| finding.effect == "torque_scale" && finding.joint.as_deref() == Some(joint))
             || findings.iter().any(|finding| finding.joint.is_none())
     };
     let remarks = diagnosis.remarks.join("\n");
     for joint in ["turn", "shoulder", "elbow"] {
-        assert!(
-            is_named(joint) || remarks.contains(&format!("{joint} ×")),
-            "{joint}: {remarks}"
-        );
+        assert!(is_named(joint) || remarks.contains(&format!("{joint} ×")), "{joint}: {remarks}");
     }
 }
 
@@ -53,10 +48,7 @@ fn a_channel_of_rounding_beside_a_link_without_mass_is_left_out() {
         let diagnosis =
             diagnose(&arm, &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
         for joint in ["turn", "shoulder"] {
-            assert!(
-                effects_on(&diagnosis, joint).contains(&"coulomb_friction"),
-                "{size}: {diagnosis:?}"
-            );
+            assert!(effects_on(&diagnosis, joint).contains(&"coulomb_friction"), "{size}: {diagnosis:?}");
         }
         assert!(effects_on(&diagnosis, "elbow").is_empty(), "{size}: {diagnosis:?}");
         let [group] = &diagnosis.report.not_diagnosed[..] else {
@@ -97,25 +89,10 @@ fn an_unpredictable_residual_has_its_joint_its_place_and_an_experiment() {
     };
     assert_eq!(open.joint, "elbow");
     assert!(open.share > 0.35 && open.share < 0.6, "{open:?}");
-    assert_eq!(
-        open.depends_on.first(),
-        Some(&Regressor::OwnPosition.into()),
-        "{open:?}"
-    );
-    assert!(
-        open.next.contains("sweep elbow slowly over its whole range"),
-        "{open:?}"
-    );
-    let located = report
-        .located
-        .iter()
-        .find(|located| located.joint == "elbow")
-        .expect("it is located");
-    let region = located
-        .regions
-        .iter()
-        .find(|region| region.axis == Axis::Angle)
-        .expect("it stands out");
+    assert_eq!(open.depends_on.first(), Some(&Regressor::OwnPosition.into()), "{open:?}");
+    assert!(open.next.contains("sweep elbow slowly over its whole range"), "{open:?}");
+    let located = report.located.iter().find(|located| located.joint == "elbow").expect("it is located");
+    let region = located.regions.iter().find(|region| region.axis == Axis::Angle).expect("it stands out");
     assert!(region.range[0] > 0.8, "{region:?}");
     assert!(!open.time.is_empty() && open.time == located.time, "{open:?}");
 }
@@ -198,9 +175,7 @@ fn a_contact_at_the_beginning_of_a_recording_is_not_named() {
                 let mut jacobian = Matrix6xX::zeros(3);
                 arm.jacobian(&mut Workspace::new(&arm), &motion.q, &arm.tool_frame(), &mut jacobian);
                 for (joint, tau) in tau.iter_mut().enumerate() {
-                    *tau -= jacobian
-                        .fixed_view::<3, 1>(3, joint)
-                        .dot(&Vector3::new(15.0, 6.0, 24.0));
+                    *tau -= jacobian.fixed_view::<3, 1>(3, joint).dot(&Vector3::new(15.0, 6.0, 24.0));
                 }
             }
         };

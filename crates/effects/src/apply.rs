@@ -53,11 +53,7 @@ impl Machine {
                     Scope::Joint => joint_of(arm, effect, effect.joint())?,
                     Scope::Arm => 0,
                 },
-                other: if kind.has_other() {
-                    joint_of(arm, effect, effect.other())?
-                } else {
-                    0
-                },
+                other: if kind.has_other() { joint_of(arm, effect, effect.other())? } else { 0 },
             };
             kind.apply(effect, place, &mut machine);
         }

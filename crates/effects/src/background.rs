@@ -38,46 +38,28 @@ pub static OWN_CONSTANT: Law = Law {
 
 /// The deviation of a friction curve from Coulomb and viscous friction: e^(−|q̇| / a tenth of the largest speed) sgn q̇ (form
 /// 0), q̇ |q̇| (form 1).
-pub static FRICTION_CURVE: Law = Law {
-    name: "friction curve",
-    column: friction_curve,
-    ..Law::PLAIN
-};
+pub static FRICTION_CURVE: Law = Law { name: "friction curve", column: friction_curve, ..Law::PLAIN };
 
 fn friction_curve(term: &Term, joint: usize, motion: &Signals<'_>) -> Option<Vec<f64>> {
     let slow = (SLOW * motion.scales.speed[joint]).max(motion.scales.rest[joint]);
     let qd = &motion.qd[joint];
-    motion.map(|k| {
-        if term.form == 0 {
-            (-(qd[k] / slow).abs()).exp() * motion.sign(joint, k)
-        } else {
-            qd[k] * qd[k].abs()
-        }
-    })
+    motion.map(
+        |k| {
+            if term.form == 0 { (-(qd[k] / slow).abs()).exp() * motion.sign(joint, k) } else { qd[k] * qd[k].abs() }
+        },
+    )
 }
 
 /// A constant torque; its coefficient is the offset of the torque's sensor, or of a friction curve.
-pub static OFFSET: Law = Law {
-    name: "offset",
-    column: |_, _, motion| Some(vec![1.0; motion.ticks()]),
-    ..Law::PLAIN
-};
+pub static OFFSET: Law = Law { name: "offset", column: |_, _, motion| Some(vec![1.0; motion.ticks()]), ..Law::PLAIN };
 
 /// The torque for a unit of one of the ten inertial parameters (`of[1]`) of a load on the last link (`of[0]`) that only some of
 /// the recordings have; zero in the others. Its columns are formed from those of the link.
-pub static OWN_LOAD: Law = Law {
-    name: "own load",
-    needs_model: true,
-    ..Law::PLAIN
-};
+pub static OWN_LOAD: Law = Law { name: "own load", needs_model: true, ..Law::PLAIN };
 
 /// The rigid torque of a joint; its coefficient is the relative error of the torque constant.
-pub static GAIN: Law = Law {
-    name: "gain",
-    column: |_, joint, motion| Some(motion.of_model(joint)),
-    needs_model: true,
-    ..Law::PLAIN
-};
+pub static GAIN: Law =
+    Law { name: "gain", column: |_, joint, motion| Some(motion.of_model(joint)), needs_model: true, ..Law::PLAIN };
 
 /// The derivative of each joint's rigid torque by time, with the opposite sign; its coefficient is the time (s) by which all measured
 /// torques come later than the positions. Neither measured torques nor known friction are differentiated, because dry friction may turn

@@ -19,11 +19,8 @@ impl LinkSide {
     /// The torque that it adds on `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ. The rotor is before the compliance and does not move
     /// with δ.
     pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
-        let (mass, drag, slope) = (
-            &rigid.mass[joint][self.at],
-            &rigid.by_velocity[joint][self.at],
-            &rigid.by_position[joint][self.at],
-        );
+        let (mass, drag, slope) =
+            (&rigid.mass[joint][self.at], &rigid.by_velocity[joint][self.at], &rigid.by_position[joint][self.at]);
         let rotor = if joint == self.at { rigid.rotor(joint) } else { 0.0 };
         self.ticks
             .iter()

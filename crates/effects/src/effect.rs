@@ -71,13 +71,7 @@ impl Effect {
                 Shape::Points => Value::Points(Vec::new()),
             }
         };
-        Self {
-            spec,
-            joint: None,
-            other: None,
-            values: spec.parameters.iter().map(blank).collect(),
-            onset: None,
-        }
+        Self { spec, joint: None, other: None, values: spec.parameters.iter().map(blank).collect(), onset: None }
     }
 
     /// This effect on the joint `name`.

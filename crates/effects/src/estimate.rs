@@ -93,9 +93,7 @@ impl dyn Estimate + '_ {
     /// of its own. A friction that was there before its change states the level, and not once more since.
     pub fn level_beside(&self, laws: &[&'static Law]) -> f64 {
         let terms = self.terms();
-        let was_there = terms
-            .iter()
-            .any(|term| !term.is_always() && self.is_always_on_joint(term.law));
+        let was_there = terms.iter().any(|term| !term.is_always() && self.is_always_on_joint(term.law));
         let is_stated = was_there || laws.iter().any(|law| self.on_joint(law).is_some());
         let shares_level = terms.iter().any(|term| term.is(&SIGN));
         if shares_level && is_stated { 0.0 } else { 1.0 }

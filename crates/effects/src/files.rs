@@ -278,10 +278,7 @@ fn from_entries(mut entries: Vec<(String, Raw)>) -> Result<Effect, ReadError> {
             None => **key != "onset",
         }
     };
-    let missing = known
-        .iter()
-        .filter(is_needed)
-        .find(|key| !given.iter().any(|given| given == *key));
+    let missing = known.iter().filter(is_needed).find(|key| !given.iter().any(|given| given == *key));
     match missing {
         Some(key) => Err(ReadError::Missing { key }),
         None => Ok(effect),

@@ -49,11 +49,7 @@ const COARSE_UNIT: std::ops::RangeInclusive<f64> = 0.4..=2.5;
 /// Whether the coefficient of a simulated drive is near one. Near a resonance it quickly becomes small, so that it says little
 /// before the size is refined.
 pub fn is_near_one(fitted: &dyn Fitted) -> bool {
-    if fitted.is_trial() {
-        UNIT.contains(&fitted.value(0))
-    } else {
-        COARSE_UNIT.contains(&fitted.value(0))
-    }
+    if fitted.is_trial() { UNIT.contains(&fitted.value(0)) } else { COARSE_UNIT.contains(&fitted.value(0)) }
 }
 
 /// The mass of the moving links (kg).

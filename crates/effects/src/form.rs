@@ -36,8 +36,7 @@ impl Grounds<'_> {
     /// Pairs of moving joints: one that an effect acts on, and another on whose motion it depends.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let others = |joint: usize| self.moving().filter(move |&other| other != joint);
-        self.moving()
-            .flat_map(move |joint| others(joint).map(move |other| (joint, other)))
+        self.moving().flat_map(move |joint| others(joint).map(move |other| (joint, other)))
     }
 
     /// The number of joints.
@@ -125,22 +124,12 @@ pub struct Form {
 impl Form {
     /// A form on a joint.
     pub fn on(turn: Turn, joint: usize, terms: Vec<Term>) -> Self {
-        Self {
-            turn,
-            joint: Some(joint),
-            other: None,
-            terms,
-        }
+        Self { turn, joint: Some(joint), other: None, terms }
     }
 
     /// A form on the whole arm.
     pub fn of_arm(terms: Vec<Term>) -> Self {
-        Self {
-            turn: Turn::Arm,
-            joint: None,
-            other: None,
-            terms,
-        }
+        Self { turn: Turn::Arm, joint: None, other: None, terms }
     }
 
     /// This form with the motion of another joint in its terms.

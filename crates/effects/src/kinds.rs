@@ -50,9 +50,7 @@ impl Kind {
     }
 
     fn at(index: usize) -> Self {
-        let kind = CATALOGUE
-            .get(index)
-            .unwrap_or_else(|| &UNMODELLED[index - CATALOGUE.len()]);
+        let kind = CATALOGUE.get(index).unwrap_or_else(|| &UNMODELLED[index - CATALOGUE.len()]);
         Self { index, kind: *kind }
     }
 

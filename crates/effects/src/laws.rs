@@ -16,11 +16,8 @@ pub fn is_same_wave(a: &Term, b: &Term, share: f64) -> bool {
 }
 
 /// q̇.
-pub static VELOCITY: Law = Law {
-    name: "velocity",
-    column: |_, joint, motion| Some(motion.qd[joint].clone()),
-    ..Law::PLAIN
-};
+pub static VELOCITY: Law =
+    Law { name: "velocity", column: |_, joint, motion| Some(motion.qd[joint].clone()), ..Law::PLAIN };
 
 /// sgn q̇.
 pub static SIGN: Law = Law {
@@ -39,18 +36,11 @@ pub static ABS_SIGN: Law = Law {
 };
 
 /// 1.
-pub static ONE: Law = Law {
-    name: "one",
-    column: |_, _, motion| Some(vec![1.0; motion.ticks()]),
-    ..Law::PLAIN
-};
+pub static ONE: Law = Law { name: "one", column: |_, _, motion| Some(vec![1.0; motion.ticks()]), ..Law::PLAIN };
 
 /// q̈.
-pub static ACCELERATION: Law = Law {
-    name: "acceleration",
-    column: |_, joint, motion| Some(motion.qdd[joint].clone()),
-    ..Law::PLAIN
-};
+pub static ACCELERATION: Law =
+    Law { name: "acceleration", column: |_, joint, motion| Some(motion.qdd[joint].clone()), ..Law::PLAIN };
 
 /// The rigid torque of the joint. Since an onset, it is with the rest that an earlier fit found: what friction and the rotor add is then
 /// known from the time before.

@@ -189,12 +189,8 @@ pub static CATALOGUE: &[&dyn EffectKind] = &[
 ];
 
 /// The effects that nearly every URDF omits, and that act on every joint.
-pub static OMITTED_BY_MOST: [&dyn EffectKind; 4] = [
-    &friction::CoulombFriction,
-    &friction::ViscousFriction,
-    &drive::RotorInertia,
-    &sensor::TorqueOffset,
-];
+pub static OMITTED_BY_MOST: [&dyn EffectKind; 4] =
+    [&friction::CoulombFriction, &friction::ViscousFriction, &drive::RotorInertia, &sensor::TorqueOffset];
 
 /// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
 pub static UNMODELLED: &[&dyn EffectKind] = &[

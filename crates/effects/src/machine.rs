@@ -42,11 +42,7 @@ pub struct Dry {
 impl Dry {
     /// Friction with a `level`: the largest torque that it resists (N m or N), as a function of velocity and circumstance.
     pub fn new(level: impl Fn(f64, Circumstance) -> f64 + Send + Sync + 'static) -> Self {
-        Self {
-            level: Arc::new(level),
-            bias: 0.0,
-            depends_on_load: false,
-        }
+        Self { level: Arc::new(level), bias: 0.0, depends_on_load: false }
     }
 
     /// This friction with an additional torque that is the same in both directions (N m or N).
@@ -82,10 +78,7 @@ impl Dry {
 
 impl fmt::Debug for Dry {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter
-            .debug_struct("Dry")
-            .field("bias", &self.bias)
-            .finish_non_exhaustive()
+        formatter.debug_struct("Dry").field("bias", &self.bias).finish_non_exhaustive()
     }
 }
 
@@ -124,10 +117,7 @@ impl Smooth {
 impl fmt::Debug for Smooth {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = formatter.debug_struct("Smooth");
-        shown
-            .field("joint", &self.joint)
-            .field("onset", &self.onset)
-            .finish_non_exhaustive()
+        shown.field("joint", &self.joint).field("onset", &self.onset).finish_non_exhaustive()
     }
 }
 
@@ -219,12 +209,7 @@ impl Machine {
         onset: Option<f64>,
         torque: impl Fn(usize, State<'_>) -> f64 + Send + Sync + 'static,
     ) {
-        self.smooth.push(Smooth {
-            joint,
-            onset,
-            viscous: None,
-            torque: Arc::new(torque),
-        });
+        self.smooth.push(Smooth { joint, onset, viscous: None, torque: Arc::new(torque) });
     }
 
     /// Adds friction proportional to the velocity (N m s/rad or N s/m).

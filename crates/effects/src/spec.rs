@@ -130,15 +130,7 @@ pub struct Parameter {
 impl Parameter {
     /// A finite number that must be given and is neutral at zero.
     pub const fn new(key: &'static str, quantity: Quantity) -> Self {
-        Self {
-            key,
-            quantity,
-            shape: Shape::Number,
-            range: Range::Finite,
-            default: None,
-            neutral: 0.0,
-            remark: None,
-        }
+        Self { key, quantity, shape: Shape::Number, range: Range::Finite, default: None, neutral: 0.0, remark: None }
     }
 
     /// This parameter, limited to `range`.
@@ -210,11 +202,7 @@ pub enum Detectability {
 
 impl Detectability {
     /// Proportional to a coefficient, with no further condition.
-    pub const LINEAR: Self = Self::Linear {
-        if_no_form: None,
-        is_of_first: false,
-        is_of_all_torque: false,
-    };
+    pub const LINEAR: Self = Self::Linear { if_no_form: None, is_of_first: false, is_of_all_torque: false };
 }
 
 /// The experiment to make where no motion distinguishes an effect from another.
@@ -374,10 +362,7 @@ impl Spec {
     };
 
     /// [`Self::EMPTY`] for an unmodelled form.
-    pub const UNMODELLED: Self = Self {
-        prior: UNMODELLED_PRIOR,
-        ..Self::EMPTY
-    };
+    pub const UNMODELLED: Self = Self { prior: UNMODELLED_PRIOR, ..Self::EMPTY };
 
     /// The parameter `key`, which may be a part of a list.
     pub fn parameter(&self, key: &str) -> Option<&'static Parameter> {

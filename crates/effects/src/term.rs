@@ -188,22 +188,12 @@ impl PartialEq for Term {
 impl Term {
     /// A term of a law that acts on one joint only.
     pub const fn on(law: &'static Law, joint: usize) -> Self {
-        Self {
-            law,
-            joint: Some(joint),
-            of: [joint, 0],
-            form: 0,
-            sizes: [0.0; 4],
-            acts: Acts::Always,
-        }
+        Self { law, joint: Some(joint), of: [joint, 0], form: 0, sizes: [0.0; 4], acts: Acts::Always }
     }
 
     /// A term of a law that may act on all joints, with the index of a joint, a link, a parameter or an axis.
     pub const fn about(law: &'static Law, about: usize) -> Self {
-        Self {
-            joint: None,
-            ..Self::on(law, about)
-        }
+        Self { joint: None, ..Self::on(law, about) }
     }
 
     /// This term with another joint.

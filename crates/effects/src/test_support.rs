@@ -30,18 +30,12 @@ pub fn machine(effect: &Effect) -> Machine {
 fn state(tick: usize) -> [[f64; 2]; 3] {
     let t = tick as f64 * PERIOD;
     let (s, c) = (2.0 * t).sin_cos();
-    [
-        [0.3 + 1.5 * t + 0.2 * s, -0.8 - 2.0 * t],
-        [1.5 + 0.4 * c, -2.0],
-        [-0.8 * s, 0.0],
-    ]
+    [[0.3 + 1.5 * t + 0.2 * s, -0.8 - 2.0 * t], [1.5 + 0.4 * c, -2.0], [-0.8 * s, 0.0]]
 }
 
 /// A signal of two joints, tick by tick.
 fn signals(pick: impl Fn(usize) -> [f64; 2]) -> Vec<Vec<f64>> {
-    (0..2)
-        .map(|joint| (0..TICKS).map(|tick| pick(tick)[joint]).collect())
-        .collect()
+    (0..2).map(|joint| (0..TICKS).map(|tick| pick(tick)[joint]).collect()).collect()
 }
 
 /// The torque of the motion (N m).
@@ -70,9 +64,7 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
     let tau = signals(|tick| torque(&arm, state(tick)));
     let square = |pick: &dyn Fn(usize, usize) -> [f64; 2]| -> Vec<Vec<Vec<f64>>> {
         let by: Vec<Vec<Vec<f64>>> = (0..2).map(|by| signals(|tick| pick(by, tick))).collect();
-        (0..2)
-            .map(|joint| by.iter().map(|by| by[joint].clone()).collect())
-            .collect()
+        (0..2).map(|joint| by.iter().map(|by| by[joint].clone()).collect()).collect()
     };
     let regressor = |tick: usize| {
         let [q, qd, qdd] = state(tick);
@@ -83,11 +75,7 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
     let links = square(&|link, tick| {
         let regressor = regressor(tick);
         let from = link * PARAMETERS_PER_LINK;
-        [0, 1].map(|joint| {
-            (0..PARAMETERS_PER_LINK)
-                .map(|k| regressor[(joint, from + k)] * nominal[from + k])
-                .sum()
-        })
+        [0, 1].map(|joint| (0..PARAMETERS_PER_LINK).map(|k| regressor[(joint, from + k)] * nominal[from + k]).sum())
     });
     // A body's torque is linear in its parameters about the tool: those of unit mass, of unit first moments, and so on.
     let payload: Vec<Vec<Vec<f64>>> = {
@@ -102,19 +90,11 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
             parameters[parameter] += if parameter == 0 { 0.0 } else { 1.0 };
             let from = if parameter == 0 { &tau } else { &of_mass };
             let with = with(parameters);
-            let less = |joint: usize| {
-                with[joint]
-                    .iter()
-                    .zip(&from[joint])
-                    .map(|(a, b)| a - b)
-                    .collect::<Vec<f64>>()
-            };
+            let less = |joint: usize| with[joint].iter().zip(&from[joint]).map(|(a, b)| a - b).collect::<Vec<f64>>();
             [less(0), less(1)]
         };
         let columns: Vec<[Vec<f64>; 2]> = (0..10).map(column).collect();
-        (0..2)
-            .map(|joint| columns.iter().map(|column| column[joint].clone()).collect())
-            .collect()
+        (0..2).map(|joint| columns.iter().map(|column| column[joint].clone()).collect()).collect()
     };
     let moved = |which: usize| {
         let arm = &arm;
@@ -133,9 +113,7 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
             signals(|tick| derivative(&turned, tick))
         })
         .to_vec();
-    let tilt: Vec<[Vec<f64>; 2]> = (0..2)
-        .map(|joint| [tilts[0][joint].clone(), tilts[1][joint].clone()])
-        .collect();
+    let tilt: Vec<[Vec<f64>; 2]> = (0..2).map(|joint| [tilts[0][joint].clone(), tilts[1][joint].clone()]).collect();
     let weightless = |tick: usize| torque(&arm.clone().with_gravity(Vector3::zeros()), state(tick));
     let along = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
         let pulled = arm.clone().with_gravity(axis);
@@ -144,9 +122,8 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
             [0, 1].map(|joint| with[joint] - without[joint])
         })
     });
-    let gravity: Vec<[Vec<f64>; 3]> = (0..2)
-        .map(|joint| [0, 1, 2].map(|axis: usize| along[axis][joint].clone()))
-        .collect();
+    let gravity: Vec<[Vec<f64>; 3]> =
+        (0..2).map(|joint| [0, 1, 2].map(|axis: usize| along[axis][joint].clone())).collect();
     let ones = || vec![1.0; TICKS];
     let force: Vec<[Vec<f64>; 3]> = (0..2).map(|_| [ones(), ones(), ones()]).collect();
     let (by_position, by_velocity, mass) = (moved(0), moved(1), moved(2));
@@ -211,20 +188,13 @@ pub fn agree(effect: &Effect, columns: &[(Term, f64)]) {
                 for (q, offset) in q.iter_mut().zip(&machine.encoder_offsets) {
                     *q += offset;
                 }
-                let at = Circumstance {
-                    time: Some(motion.time(tick)),
-                    load: motion.load(joint, tick),
-                };
+                let at = Circumstance { time: Some(motion.time(tick)), load: motion.load(joint, tick) };
                 let mut needed = torque(&arm, [q, qd, qdd])[joint] - motion.rigid.tau[joint][tick];
                 for (_, dry) in machine.dry.iter().filter(|(on, _)| *on == joint) {
                     let direction = sign(qd[joint]);
                     needed += direction * dry.level(qd[joint], at) + direction.abs() * dry.bias();
                 }
-                let now = State {
-                    q: &said,
-                    qd: &qd,
-                    qdd: &qdd,
-                };
+                let now = State { q: &said, qd: &qd, qdd: &qdd };
                 needed += machine
                     .smooth
                     .iter()
@@ -236,10 +206,7 @@ pub fn agree(effect: &Effect, columns: &[(Term, f64)]) {
                     .zip(columns)
                     .map(|(column, (_, value))| column.as_ref().map_or(0.0, |column| value * column[tick]))
                     .sum();
-                assert!(
-                    (found - needed).abs() < 1e-9,
-                    "joint {joint}, tick {tick}: {found} is not {needed}"
-                );
+                assert!((found - needed).abs() < 1e-9, "joint {joint}, tick {tick}: {found} is not {needed}");
             }
         }
     });

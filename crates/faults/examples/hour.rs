@@ -39,9 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .with("time_constant", 900.0),
         Injected {
             onset: Some(25.0 * motions as f64),
-            ..Injected::new("payload", None)
-                .with("mass", 0.5)
-                .with("com", vec![0.01, 0.0, 0.05])
+            ..Injected::new("payload", None).with("mass", 0.5).with("com", vec![0.01, 0.0, 0.05])
         },
     ];
     let made = conceal_effects(&robot, "hour", &effects, &settings)?;

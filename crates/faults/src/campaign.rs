@@ -111,10 +111,7 @@ impl CasePlan {
         let turn = self.index % robots.len();
         let needs_plain = self.effects.iter().any(|effect| effect == "rotor_inertia");
         let from_here = (0..robots.len()).map(|k| &robots[(turn + k) % robots.len()]);
-        from_here
-            .into_iter()
-            .find(|robot| !(needs_plain && robot.has_rotors()))
-            .unwrap_or(&robots[turn])
+        from_here.into_iter().find(|robot| !(needs_plain && robot.has_rotors())).unwrap_or(&robots[turn])
     }
 }
 
@@ -126,10 +123,7 @@ struct Deck {
 
 impl Deck {
     fn new(names: Vec<&'static str>) -> Self {
-        Self {
-            names,
-            left: Vec::new(),
-        }
+        Self { names, left: Vec::new() }
     }
 
     fn next(&mut self, random: &mut impl Rng) -> &'static str {
@@ -171,12 +165,7 @@ mod tests {
     use super::*;
 
     fn campaign(seed: u64, cases: usize, lifelike: bool) -> Campaign {
-        Campaign {
-            seed,
-            cases,
-            lifelike,
-            urdf_error: None,
-        }
+        Campaign { seed, cases, lifelike, urdf_error: None }
     }
 
     #[test]
@@ -185,10 +174,7 @@ mod tests {
             let plans = campaign(7, 300, lifelike).plans();
             let count = |holds: &dyn Fn(&CasePlan) -> bool| plans.iter().filter(|plan| holds(plan)).count();
             assert_eq!(count(&|plan| plan.effects.is_empty()), 100);
-            assert_eq!(
-                count(&|plan| plan.effects.iter().any(|name| crate::is_outside(name))),
-                30
-            );
+            assert_eq!(count(&|plan| plan.effects.iter().any(|name| crate::is_outside(name))), 30);
             assert_eq!(count(&|plan| plan.hard), 150);
             assert!(count(&|plan| !plan.background_friction) <= 75);
             for sigma in SIGMAS {
@@ -218,10 +204,7 @@ mod tests {
         assert_eq!(campaign(1).case(3), campaign(1).plans().into_iter().nth(3));
         assert_eq!(campaign(1).case(30), None);
         assert_ne!(campaign(1).plans(), campaign(2).plans());
-        let same = Campaign {
-            urdf_error: Some(0.1),
-            ..campaign(1)
-        };
+        let same = Campaign { urdf_error: Some(0.1), ..campaign(1) };
         assert!(same.plans().iter().all(|plan| plan.urdf_error == 0.1));
     }
 }

@@ -32,10 +32,7 @@ pub fn write_case(concealment: &Concealment, folder: &Path, truths: &Path) -> Re
         std::fs::create_dir_all(path).map_err(fails(path))?;
     }
     // On the same file system, so that it can be moved to its place in one step.
-    let partial = tempfile::Builder::new()
-        .prefix(".partial-")
-        .tempdir_in(folder)
-        .map_err(fails(folder))?;
+    let partial = tempfile::Builder::new().prefix(".partial-").tempdir_in(folder).map_err(fails(folder))?;
     let urdf = concealment.urdf.as_bytes();
     write_whole(&partial.path().join("robot.urdf"), |file| file.write_all(urdf))?;
     for (k, recording) in concealment.train.iter().enumerate() {

@@ -38,16 +38,8 @@ impl<'a> CaseMachine<'a> {
             let reason = format!("{case} is of the robot \"{its}\", not of \"{name}\"; give the robot it was drawn on");
             return Err(FaultError::Setting(reason));
         }
-        let effects: Vec<&Injected> = truth
-            .injected
-            .iter()
-            .filter(|effect| !robot.has_by_itself(effect))
-            .collect();
-        Ok(Self {
-            machine: Machine::new(robot, &effects, None)?,
-            robot,
-            quantum: truth.encoder_quantum,
-        })
+        let effects: Vec<&Injected> = truth.injected.iter().filter(|effect| !robot.has_by_itself(effect)).collect();
+        Ok(Self { machine: Machine::new(robot, &effects, None)?, robot, quantum: truth.encoder_quantum })
     }
 
     /// Runs the machine for `ticks` ticks of 1 ms from `start` (s). It begins at rest with its encoders at `q` (rad or
@@ -69,17 +61,9 @@ impl<'a> CaseMachine<'a> {
         let arm = self.robot.arm();
         let mut holding = vec![0.0; arm.dof()];
         arm.gravity_torque(&mut arm::Workspace::new(arm), q, &mut holding);
-        let begin = Begin {
-            time: start,
-            q,
-            holding: &holding,
-        };
+        let begin = Begin { time: start, q, holding: &holding };
         let (run, links) = self.machine.drive(&begin, self.quantum, ticks, &mut controller)?;
-        Ok(Driven {
-            links,
-            q: run.q,
-            tau: run.tau,
-        })
+        Ok(Driven { links, q: run.q, tau: run.tau })
     }
 
     /// The torques that a motion of the links requires by the machine's own laws: the exact model.
@@ -122,12 +106,7 @@ mod tests {
         let reference = excitation(robot, 60.0, &mut ChaCha8Rng::seed_from_u64(5)).first_seconds(4.0);
         let n = robot.arm().dof();
         let start = reference.time(0);
-        let inverse = machine.inverse(&LinkMotion {
-            start,
-            q: &reference.q,
-            qd: &reference.qd,
-            qdd: &reference.qdd,
-        });
+        let inverse = machine.inverse(&LinkMotion { start, q: &reference.q, qd: &reference.qd, qdd: &reference.qdd });
         let beyond = vec![0.0; inverse.beyond.len()];
         [(&reference.ff, &beyond), (&inverse.tau, &inverse.beyond)].map(|(ff, beyond)| {
             let begin: Vec<f64> = (0..n).map(|j| reference.q[j] + beyond[j]).collect();
@@ -157,17 +136,12 @@ mod tests {
         let level = |effect: &str| on(effect).with("amplitude", 4.0);
         for effect in [
             on("quadratic_drag").with("coefficient", 8.0).formed("power"),
-            on("spring")
-                .with("stiffness", 30.0)
-                .with("rest", 0.6)
-                .formed("gas spring"),
+            on("spring").with("stiffness", 30.0).with("rest", 0.6).formed("gas spring"),
             on("encoder_offset").with("offset", 0.05),
             on("torque_scale").with("factor", 1.5),
             level("hysteresis_unknown").with("scale", 0.1).with("shape", 0.6),
             level("history_unknown").with("time_constant", 1.0),
-            Injected::new("payload", None)
-                .with("mass", 2.0)
-                .with("com", serde_json::json!([0.0, 0.0, 0.1])),
+            Injected::new("payload", None).with("mass", 2.0).with("com", serde_json::json!([0.0, 0.0, 0.1])),
         ] {
             let [nominal, exact] = errors(&robot, vec![effect.clone()]);
             assert!(exact < 0.2 * nominal, "{effect:?}: {exact} {nominal}");

@@ -84,14 +84,10 @@ pub fn conceal_effects(
     if !RATES.contains(&settings.rate) {
         let known: Vec<String> = RATES.iter().map(ToString::to_string).collect();
         let (rate, known) = (settings.rate, known.join(", "));
-        return Err(FaultError::Setting(format!(
-            "the rate is {rate} Hz; give one of {known} Hz"
-        )));
+        return Err(FaultError::Setting(format!("the rate is {rate} Hz; give one of {known} Hz")));
     }
     if settings.training == 0 {
-        return Err(FaultError::Setting(
-            "there is no training recording; ask for one at least".into(),
-        ));
+        return Err(FaultError::Setting("there is no training recording; ask for one at least".into()));
     }
     let kind = Kind {
         seed: settings.seed,

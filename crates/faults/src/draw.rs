@@ -37,10 +37,7 @@ impl Scales<'_> {
         if joints.iter().any(|&j| fits(j)) {
             joints.retain(|&j| fits(j));
         }
-        let joint = joints
-            .choose(random)
-            .copied()
-            .unwrap_or_else(|| random.random_range(0..n));
+        let joint = joints.choose(random).copied().unwrap_or_else(|| random.random_range(0..n));
         let name = self.robot.arm().joints()[joint].name.as_str();
         let bare = Injected::new(fault.name, (fault.place != Place::WholeArm).then_some(name));
         let mut drawn = (fault.draw)(bare, &self.site(joint), random);

@@ -61,10 +61,7 @@ impl Biquad {
         let b = k * k * norm;
         Self {
             b: [b, 2.0 * b, b],
-            a: [
-                2.0 * (k * k - 1.0) * norm,
-                (1.0 - std::f64::consts::SQRT_2 * k + k * k) * norm,
-            ],
+            a: [2.0 * (k * k - 1.0) * norm, (1.0 - std::f64::consts::SQRT_2 * k + k * k) * norm],
         }
     }
 
@@ -94,9 +91,7 @@ mod tests {
     #[test]
     fn low_frequencies_pass() {
         let wave = |hertz: f64| -> Vec<f64> {
-            (0..4000)
-                .map(|k| (std::f64::consts::TAU * hertz * f64::from(k) * 1e-3).sin())
-                .collect()
+            (0..4000).map(|k| (std::f64::consts::TAU * hertz * f64::from(k) * 1e-3).sin()).collect()
         };
         let (slow, fast) = (wave(1.0), wave(200.0));
         let (low, above) = low_passed(&slow, 1, 1e-3, 0);

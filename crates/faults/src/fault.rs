@@ -190,17 +190,10 @@ impl Fault {
         example: |bare| bare,
     };
 
-    const ON_THE_ARM: Self = Self {
-        place: Place::WholeArm,
-        ..Self::ON_A_JOINT
-    };
+    const ON_THE_ARM: Self = Self { place: Place::WholeArm, ..Self::ON_A_JOINT };
 
-    const OUTSIDE_THE_CATALOGUE: Self = Self {
-        is_outside: true,
-        may_repeat: true,
-        size: Size::Times(&["amplitude"]),
-        ..Self::ON_A_JOINT
-    };
+    const OUTSIDE_THE_CATALOGUE: Self =
+        Self { is_outside: true, may_repeat: true, size: Size::Times(&["amplitude"]), ..Self::ON_A_JOINT };
 
     /// The fault of this name.
     pub(crate) fn named(name: &str) -> Option<&'static Self> {
@@ -249,11 +242,7 @@ pub fn form_parameters(effect: &str) -> &'static [&'static str] {
 }
 
 fn names(counts: impl Fn(&Fault) -> bool) -> Vec<&'static str> {
-    FAULTS
-        .iter()
-        .filter(|fault| counts(fault))
-        .map(|fault| fault.name)
-        .collect()
+    FAULTS.iter().filter(|fault| counts(fault)).map(|fault| fault.name).collect()
 }
 
 /// The names that the file of a fault needs.

@@ -56,10 +56,7 @@ impl<'a> Machine<'a> {
         for (i, effect) in effects.iter().enumerate() {
             parts.extend(crate::fault::parts(effect, &arm, Some(i) != without)?);
         }
-        Ok(Self {
-            robot,
-            parts: Parts::new(parts, arm.dof()),
-        })
+        Ok(Self { robot, parts: Parts::new(parts, arm.dof()) })
     }
 
     /// Runs the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0 for none).
@@ -68,11 +65,7 @@ impl<'a> Machine<'a> {
     /// [`FaultError::Lost`] if it cannot follow; [`FaultError::Plant`] if it cannot be simulated.
     pub(crate) fn run(&self, reference: &Reference, quantum: f64) -> Result<Run, FaultError> {
         let n = self.robot.arm().dof();
-        let begin = Begin {
-            time: reference.time(0),
-            q: &reference.q[..n],
-            holding: &reference.ff[..n],
-        };
+        let begin = Begin { time: reference.time(0), q: &reference.q[..n], holding: &reference.ff[..n] };
         let mut law = PositionLoop::new(reference, self.robot, &self.parts);
         let mut simulation = Simulation::new(self, &begin, quantum, reference.ticks())?;
         for tick in 0..reference.ticks() {
@@ -171,11 +164,7 @@ impl<'a> Simulation<'a> {
             contact: Matrix6xX::zeros(n),
             sensed: [vec![0.0; n], vec![0.0; n]],
             commands: vec![0.0; n],
-            run: Run {
-                q: Vec::with_capacity(size),
-                qd: Vec::with_capacity(size),
-                tau: Vec::with_capacity(size),
-            },
+            run: Run { q: Vec::with_capacity(size), qd: Vec::with_capacity(size), tau: Vec::with_capacity(size) },
             arm,
             plant,
         };
@@ -208,12 +197,7 @@ impl<'a> Simulation<'a> {
             }
             if inertia <= 0.0 {
                 return Err(FaultError::Effect {
-                    effect: if connection.halfgap > 0.0 {
-                        "backlash"
-                    } else {
-                        "joint_elasticity"
-                    }
-                    .into(),
+                    effect: if connection.halfgap > 0.0 { "backlash" } else { "joint_elasticity" }.into(),
                     reason: "its rotor has no inertia; add rotor = … (kg m²), or a rotor_inertia on the joint".into(),
                 });
             }
@@ -239,9 +223,7 @@ impl<'a> Simulation<'a> {
             self.change(time, false)?;
         }
         for j in 0..n {
-            let position = self.rotors[j]
-                .as_ref()
-                .map_or(self.plant.q()[j], Rotor::encoder_position);
+            let position = self.rotors[j].as_ref().map_or(self.plant.q()[j], Rotor::encoder_position);
             let drive = &mut self.drives[j];
             drive.read_encoder(position + self.parts.encoder(j, time), self.quantum);
             (self.sensed[0][j], self.sensed[1][j]) = (drive.sensed.position, drive.sensed.velocity);
@@ -275,13 +257,7 @@ impl<'a> Simulation<'a> {
         if !self.parts.depends_on_rigid_load() {
             return;
         }
-        self.arm.inverse_dynamics(
-            &mut self.workspace,
-            self.plant.q(),
-            self.plant.qd(),
-            &self.qdd,
-            &mut self.rigid,
-        );
+        self.arm.inverse_dynamics(&mut self.workspace, self.plant.q(), self.plant.qd(), &self.qdd, &mut self.rigid);
         for (j, loads) in self.loads.iter_mut().enumerate() {
             loads[0] = self.rigid[j] - self.arm.joints()[j].rotor_inertia * self.qdd[j];
         }
@@ -316,12 +292,7 @@ impl<'a> Simulation<'a> {
             if time < link.onset {
                 continue;
             }
-            let at = At {
-                time,
-                joint: link.joint,
-                q: self.plant.q(),
-                qd: self.plant.qd(),
-            };
+            let at = At { time, joint: link.joint, q: self.plant.q(), qd: self.plant.qd() };
             self.net[link.joint] -= link.law.torque(at, state, TICK);
         }
     }
@@ -334,8 +305,7 @@ impl<'a> Simulation<'a> {
                 continue;
             }
             let tool = self.arm.tool_frame();
-            self.arm
-                .jacobian(&mut self.workspace, self.plant.q(), &tool, &mut self.contact);
+            self.arm.jacobian(&mut self.workspace, self.plant.q(), &tool, &mut self.contact);
             for (j, net) in self.net.iter_mut().enumerate() {
                 *net += part * self.contact.fixed_view::<3, 1>(3, j).dot(&contact.force);
             }
@@ -358,11 +328,7 @@ impl<'a> Simulation<'a> {
         };
         let first = add_coupled_inertia(&self.net, &self.qdd);
         // With the dry friction of the last tick, because that of this tick is not known yet.
-        let rubbed: Vec<f64> = first
-            .iter()
-            .zip(&self.friction.torques)
-            .map(|(net, f)| net + f)
-            .collect();
+        let rubbed: Vec<f64> = first.iter().zip(&self.friction.torques).map(|(net, f)| net + f).collect();
         let mut qdd = self.qdd.clone();
         self.plant.accelerations(&rubbed, &mut qdd)?;
         self.net = add_coupled_inertia(&self.net, &qdd);
@@ -377,8 +343,7 @@ impl Simulation<'_> {
             return;
         }
         let state = [self.plant.q(), self.plant.qd()];
-        self.friction
-            .solve(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
+        self.friction.solve(&self.arm, &mut self.workspace, state, &self.net, &self.levels);
         for (net, torque) in self.net.iter_mut().zip(&self.friction.torques) {
             *net += torque;
         }
@@ -386,11 +351,7 @@ impl Simulation<'_> {
 }
 
 fn options() -> PlantOptions {
-    PlantOptions {
-        step: TICK,
-        order: ORDER,
-        ..PlantOptions::default()
-    }
+    PlantOptions { step: TICK, order: ORDER, ..PlantOptions::default() }
 }
 
 #[cfg(test)]

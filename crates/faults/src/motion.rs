@@ -54,14 +54,7 @@ impl Reference {
         for (((ff, q), qd), qdd) in ff.chunks_mut(n).zip(q.chunks(n)).zip(qd.chunks(n)).zip(qdd.chunks(n)) {
             arm.inverse_dynamics(&mut workspace, q, qd, qdd, ff);
         }
-        Self {
-            dof: n,
-            start,
-            q,
-            qd,
-            qdd,
-            ff,
-        }
+        Self { dof: n, start, q, qd, qdd, ff }
     }
 
     /// Its first `seconds` seconds.
@@ -144,17 +137,12 @@ pub(crate) fn excitation(robot: &Robot, start: f64, random: &mut impl Rng) -> Re
         }
         let (least, most) = wave
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &value| {
-                (least.min(value), most.max(value))
-            });
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &value| (least.min(value), most.max(value)));
         let reach = reach(robot, j, 1.075);
         // A peak-to-peak range of 0.85 to 1.45 and a centre within ±0.35, where the limits allow it.
         let span = random.random_range(0.79..1.35) * reach / (most - least);
         centers[j] = robot.home()[j] + random.random_range(-0.32..0.32) * reach;
-        let speed = wave
-            .windows(2)
-            .map(|pair| (pair[1] - pair[0]).abs() / TICK)
-            .fold(0.0, f64::max);
+        let speed = wave.windows(2).map(|pair| (pair[1] - pair[0]).abs() / TICK).fold(0.0, f64::max);
         let fastest = FASTEST.min(LIMIT_SHARE * robot.arm().joints()[j].limits.velocity);
         let scale = span.min(fastest / speed);
         for (tick, value) in wave.iter().enumerate() {
@@ -184,10 +172,7 @@ fn reduced_to_limits(robot: &Robot, start: f64, centers: &[f64], waves: &[f64]) 
 pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -> Reference {
     let n = robot.arm().dof();
     let reaches: Vec<f64> = (0..n).map(|j| reach(robot, j, 0.8)).collect();
-    let mut at: Vec<f64> = reaches
-        .iter()
-        .map(|reach| random.random_range(-0.5..0.5) * reach)
-        .collect();
+    let mut at: Vec<f64> = reaches.iter().map(|reach| random.random_range(-0.5..0.5) * reach).collect();
     let mut waves = Vec::with_capacity(ticks() * n);
     let rest = |waves: &mut Vec<f64>, at: &[f64], length: usize| {
         for _ in 0..length {
@@ -196,10 +181,7 @@ pub(crate) fn pick_and_place(robot: &Robot, start: f64, random: &mut impl Rng) -
     };
     rest(&mut waves, &at, LEAD_TICKS + random.random_range(0..200));
     while waves.len() < ticks() * n {
-        let next: Vec<f64> = reaches
-            .iter()
-            .map(|reach| random.random_range(-1.0..1.0) * reach)
-            .collect();
+        let next: Vec<f64> = reaches.iter().map(|reach| random.random_range(-1.0..1.0) * reach).collect();
         let mut time: f64 = random.random_range(1.1..2.3);
         for j in 0..n {
             // The peak velocity of either profile is below twice its mean.

@@ -65,27 +65,18 @@ pub(crate) enum Property {
 impl Property {
     /// A piece that remains when its fault is removed.
     pub(crate) fn in_both_machines(self) -> Piece {
-        Piece {
-            what: self,
-            there: Presence::Always,
-        }
+        Piece { what: self, there: Presence::Always }
     }
 
     /// A piece that is added when its fault is removed.
     pub(crate) fn only_without_fault(self) -> Piece {
-        Piece {
-            what: self,
-            there: Presence::Without,
-        }
+        Piece { what: self, there: Presence::Without }
     }
 }
 
 impl From<Property> for Piece {
     fn from(what: Property) -> Self {
-        Self {
-            what,
-            there: Presence::With,
-        }
+        Self { what, there: Presence::With }
     }
 }
 
@@ -195,12 +186,7 @@ pub(crate) struct DryAt {
 impl DryAt {
     /// At a velocity and a time, under the rigid load and that of the drive.
     pub(crate) fn new(velocity: f64, time: f64, [rigid_load, drive_load]: [f64; 2]) -> Self {
-        Self {
-            velocity,
-            time,
-            rigid_load,
-            drive_load,
-        }
+        Self { velocity, time, rigid_load, drive_load }
     }
 }
 
@@ -222,30 +208,20 @@ pub(crate) struct Resistance {
 impl Resistance {
     /// Multiplied by a factor.
     pub(crate) fn times(self, factor: f64) -> Self {
-        Self {
-            level: factor * self.level,
-            bias: factor * self.bias,
-        }
+        Self { level: factor * self.level, bias: factor * self.bias }
     }
 }
 
 /// The dry friction of its parts.
 pub(crate) fn resistance<'a>(parts: impl Iterator<Item = &'a dyn DryLaw>, at: &DryAt) -> Resistance {
-    let mut sum = DrySum {
-        level: 0.0,
-        bias: 0.0,
-        factor: 1.0,
-    };
+    let mut sum = DrySum { level: 0.0, bias: 0.0, factor: 1.0 };
     for part in parts {
         part.add_to(&mut sum, at);
     }
     // With an asymmetry larger than the level, or with a negative Stribeck or thermal factor, friction would drive the
     // joint.
     let level = (sum.level * sum.factor).max(0.0);
-    Resistance {
-        level,
-        bias: (sum.bias * sum.factor).clamp(-level, level),
-    }
+    Resistance { level, bias: (sum.bias * sum.factor).clamp(-level, level) }
 }
 
 /// A smooth, or nearly smooth, torque on the drive's side of a joint.

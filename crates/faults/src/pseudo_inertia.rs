@@ -23,9 +23,7 @@ impl PseudoInertia {
         let central = central.eigenvectors * moments * central.eigenvectors.transpose();
         let first = body.mass * body.com;
         let mut matrix = Matrix4::zeros();
-        matrix
-            .fixed_view_mut::<3, 3>(0, 0)
-            .copy_from(&(central + first * body.com.transpose()));
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&(central + first * body.com.transpose()));
         matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&first);
         matrix.fixed_view_mut::<1, 3>(3, 0).copy_from(&first.transpose());
         matrix[(3, 3)] = body.mass;
@@ -44,11 +42,7 @@ impl PseudoInertia {
         let com: Vector3<f64> = self.0.fixed_view::<3, 1>(0, 3) / mass;
         let central = self.0.fixed_view::<3, 3>(0, 0) - mass * com * com.transpose();
         let central = 0.5 * (central + central.transpose());
-        Inertia {
-            mass,
-            com,
-            tensor: Matrix3::identity() * central.trace() - central,
-        }
+        Inertia { mass, com, tensor: Matrix3::identity() * central.trace() - central }
     }
 
     /// Its radius of gyration about the frame's origin (m).

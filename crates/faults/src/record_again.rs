@@ -34,11 +34,7 @@ pub fn record_again(
     }
     // After the training and held-out recordings.
     let reference = Reference::new(robot.arm(), start(TRAINING[usize::from(plan.hard)] + 1), q);
-    let effects: Vec<&Injected> = truth
-        .injected
-        .iter()
-        .filter(|effect| !robot.has_by_itself(effect))
-        .collect();
+    let effects: Vec<&Injected> = truth.injected.iter().filter(|effect| !robot.has_by_itself(effect)).collect();
     let run = Machine::new(robot, &effects, None)?.run(&reference, truth.encoder_quantum)?;
     // The factor of friction in that recording is the mean one.
     let real = truth.lifelike.clone().unwrap_or_default();
@@ -69,12 +65,7 @@ mod tests {
     #[test]
     fn a_case_is_recorded_again_as_it_was() {
         let robot = puma();
-        let campaign = Campaign {
-            seed: 5,
-            cases: 4,
-            lifelike: false,
-            urdf_error: None,
-        };
+        let campaign = Campaign { seed: 5, cases: 4, lifelike: false, urdf_error: None };
         let mut plan = campaign.case(0).expect("there is one");
         // From the start on, so that it is also present in the second recording.
         plan.effects = vec!["transmission_coupling".into()];

@@ -134,11 +134,7 @@ impl Robot {
         let mut matrix = DMatrix::zeros(n, n);
         let mut gravity = vec![0.0; n];
         for _ in 0..POSES {
-            let q: Vec<f64> = self
-                .home
-                .iter()
-                .map(|home| home + random.random_range(-0.5..0.5))
-                .collect();
+            let q: Vec<f64> = self.home.iter().map(|home| home + random.random_range(-0.5..0.5)).collect();
             self.arm.mass_matrix(&mut workspace, &q, &mut matrix);
             let inverse = matrix.clone().try_inverse();
             self.arm.gravity_torque(&mut workspace, &q, &mut gravity);
@@ -166,9 +162,5 @@ pub(crate) fn has_another_joint(robot: &Robot) -> bool {
 fn home(joint: &arm::Joint) -> f64 {
     let (lower, upper) = (joint.limits.lower, joint.limits.upper);
     let room = 0.25 * (upper - lower);
-    if room.is_infinite() || (lower + room <= 0.0 && upper - room >= 0.0) {
-        0.0
-    } else {
-        0.5 * (lower + upper)
-    }
+    if room.is_infinite() || (lower + room <= 0.0 && upper - room >= 0.0) { 0.0 } else { 0.5 * (lower + upper) }
 }

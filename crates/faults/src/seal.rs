@@ -79,10 +79,8 @@ pub fn sha256(bytes: &[u8]) -> String {
 /// # Errors
 /// [`SealError::Unreadable`].
 pub fn sha256_of(path: &Path) -> Result<String, SealError> {
-    let unreadable = |reason: std::io::Error| SealError::Unreadable {
-        what: path.display().to_string(),
-        reason: reason.to_string(),
-    };
+    let unreadable =
+        |reason: std::io::Error| SealError::Unreadable { what: path.display().to_string(), reason: reason.to_string() };
     let mut file = std::fs::File::open(path).map_err(unreadable)?;
     let mut hash = Sha256::new();
     std::io::copy(&mut file, &mut hash).map_err(unreadable)?;
@@ -92,13 +90,7 @@ pub fn sha256_of(path: &Path) -> Result<String, SealError> {
 impl Seal {
     /// Seals `cases`.
     pub fn new(program: Program, source: String, cases: Vec<SealedCase>) -> Self {
-        let mut seal = Self {
-            schema: SCHEMA.to_owned(),
-            program,
-            source,
-            cases,
-            whole: String::new(),
-        };
+        let mut seal = Self { schema: SCHEMA.to_owned(), program, source, cases, whole: String::new() };
         seal.whole = sha256(seal.lines().as_bytes());
         seal
     }
@@ -132,11 +124,7 @@ impl Seal {
 impl SealedCase {
     /// One hash for all inputs of a diagnosis.
     pub fn inputs(&self) -> String {
-        let lines: String = self
-            .files
-            .iter()
-            .map(|(name, hash)| format!("{hash}  {name}\n"))
-            .collect();
+        let lines: String = self.files.iter().map(|(name, hash)| format!("{hash}  {name}\n")).collect();
         sha256(lines.as_bytes())
     }
 
@@ -164,11 +152,7 @@ fn compare(what: &str, found: String, sealed: &str) -> Result<(), SealError> {
     if found == sealed {
         return Ok(());
     }
-    Err(SealError::Changed {
-        what: what.to_owned(),
-        found,
-        sealed: sealed.to_owned(),
-    })
+    Err(SealError::Changed { what: what.to_owned(), found, sealed: sealed.to_owned() })
 }
 
 #[cfg(test)]
@@ -178,10 +162,7 @@ mod tests {
     #[test]
     fn the_hash_is_that_of_the_standard() {
         // FIPS 180-4, appendix B.1.
-        assert_eq!(
-            sha256(b"abc"),
-            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
-        );
+        assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }
 
     #[test]
@@ -193,10 +174,7 @@ mod tests {
             truth: sha256(b"nothing"),
             files: [("a.csv".to_owned(), sha256(b"1\n"))].into(),
         };
-        let program = Program {
-            version: "1".into(),
-            sha256: sha256(b"program"),
-        };
+        let program = Program { version: "1".into(), sha256: sha256(b"program") };
         let mut seal = Seal::new(program, "seed 7".into(), vec![case.clone()]);
         assert_eq!(seal.check(), Ok(()));
         assert_eq!(case.check_files(folder.path()), Ok(()));

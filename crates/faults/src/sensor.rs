@@ -63,11 +63,7 @@ impl Sensors {
         };
         let mut qd = vec![Vec::new(); n];
         // First-order coloured noise, with the same standard deviation as white noise and correlated rows.
-        let kept = if self.noise_time > 0.0 {
-            (-self.period() / self.noise_time).exp()
-        } else {
-            0.0
-        };
+        let kept = if self.noise_time > 0.0 { (-self.period() / self.noise_time).exp() } else { 0.0 };
         let fresh = (1.0 - kept * kept).sqrt();
         let mut noise = vec![0.0; n];
         let mut is_first = true;
@@ -135,11 +131,7 @@ mod tests {
         let robot = seven_axis();
         let n = robot.arm().dof();
         let reference = excitation(&robot, 30.0, &mut ChaCha8Rng::seed_from_u64(4));
-        let run = Run {
-            q: reference.q.clone(),
-            qd: reference.qd.clone(),
-            tau: reference.ff.clone(),
-        };
+        let run = Run { q: reference.q.clone(), qd: reference.qd.clone(), tau: reference.ff.clone() };
         let clean = Sensors {
             ticks: 4,
             jitter: false,
@@ -154,42 +146,27 @@ mod tests {
         let recording = record(&clean);
         assert_eq!(recording.len(), 6250);
         assert_eq!((recording.time[0], recording.time[6249]), (30.0, 54.996));
-        let noise: Vec<f64> = (0..6250)
-            .map(|row| recording.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2])
-            .collect();
+        let noise: Vec<f64> =
+            (0..6250).map(|row| recording.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2]).collect();
         assert!((deviation(&noise) - 0.5).abs() < 0.02, "{}", deviation(&noise));
         assert!((recording.q[1][100] - run.q[(LEAD_TICKS + 400) * n + 1]).abs() <= 0.51e-5);
 
         // Coloured noise has the same size and correlated rows; torques are rounded to steps; a file's own clock
         // begins at zero.
-        let real = record(&Sensors {
-            noise_time: 0.02,
-            torque_quantum: vec![0.125; n],
-            own_clocks: true,
-            ..clean.clone()
-        });
+        let real =
+            record(&Sensors { noise_time: 0.02, torque_quantum: vec![0.125; n], own_clocks: true, ..clean.clone() });
         assert_eq!((real.time[0], real.time[6249]), (0.0, 24.996));
-        let noise: Vec<f64> = (0..6250)
-            .map(|row| real.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2])
-            .collect();
+        let noise: Vec<f64> = (0..6250).map(|row| real.tau[2][row] - run.tau[(LEAD_TICKS + 4 * row) * n + 2]).collect();
         let lagged: f64 = noise.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 6249.0;
         assert!((deviation(&noise) - 0.5).abs() < 0.06, "{}", deviation(&noise));
         assert!((lagged / 0.25 - (-0.2_f64).exp()).abs() < 0.15, "{lagged}");
         assert!(real.tau[2].iter().all(|tau| (tau / 0.125).fract() == 0.0));
 
-        let rough = record(&Sensors {
-            jitter: true,
-            lost: true,
-            ..clean
-        });
+        let rough = record(&Sensors { jitter: true, lost: true, ..clean });
         let lost = 6250 - rough.len();
         assert!((30..100).contains(&lost), "{lost}");
         assert!(rough.time.windows(2).all(|pair| pair[0] < pair[1]));
-        let late: Vec<f64> = rough
-            .time
-            .iter()
-            .map(|time| time - (time / 0.004).round() * 0.004)
-            .collect();
+        let late: Vec<f64> = rough.time.iter().map(|time| time - (time / 0.004).round() * 0.004).collect();
         assert!((deviation(&late) - 4e-4).abs() < 2e-5, "{}", deviation(&late));
     }
 

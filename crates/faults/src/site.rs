@@ -52,14 +52,7 @@ pub(crate) struct Site<'a> {
 impl Scales<'_> {
     /// The joint with the index `joint`.
     pub(crate) fn site(&self, joint: usize) -> Site<'_> {
-        Site {
-            scales: self,
-            robot: self.robot,
-            hard: self.hard,
-            lifelike: self.lifelike,
-            span: self.span,
-            joint,
-        }
+        Site { scales: self, robot: self.robot, hard: self.hard, lifelike: self.lifelike, span: self.span, joint }
     }
 }
 
@@ -125,11 +118,7 @@ impl<'a> Site<'a> {
 
 /// `bare` in another form than the first, with a probability of one half.
 pub(crate) fn perhaps_in_form(bare: Injected, form: &str, random: &mut ChaCha8Rng) -> Injected {
-    if random.random_bool(0.5) {
-        bare.formed(form)
-    } else {
-        bare
-    }
+    if random.random_bool(0.5) { bare.formed(form) } else { bare }
 }
 
 /// A number whose logarithm is distributed uniformly between the logarithms of `least` and `most`.

@@ -24,9 +24,7 @@ pub(crate) const SIGMAS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
 /// [`FaultError::Setting`] if `sigma` is outside its range, or the text cannot be read.
 pub(crate) fn with_inertial_errors(urdf: &str, sigma: f64, random: &mut ChaCha8Rng) -> Result<String, FaultError> {
     if !(0.0..=1.0).contains(&sigma) {
-        return Err(FaultError::Setting(format!(
-            "the URDF's error is {sigma}; give a number from 0 (exact) to 1"
-        )));
+        return Err(FaultError::Setting(format!("the URDF's error is {sigma}; give a number from 0 (exact) to 1")));
     }
     if sigma == 0.0 {
         return Ok(urdf.to_owned());
@@ -70,9 +68,7 @@ pub(crate) fn with_tool(urdf: &str, on: &str, tool: &Inertia) -> Result<String, 
     let inertial = tool.to_urdf();
     let weld =
         format!("<joint name=\"{name}_weld\" type=\"fixed\"><parent link=\"{on}\"/><child link=\"{name}\"/></joint>");
-    Ok(format!(
-        "{before}  <link name=\"{name}\">{inertial}</link>\n  {weld}\n{after}"
-    ))
+    Ok(format!("{before}  <link name=\"{name}\">{inertial}</link>\n  {weld}\n{after}"))
 }
 
 /// The places of the links' inertials in the text, each with its body in the link's frame.
@@ -153,14 +149,8 @@ mod tests {
     #[test]
     fn sigma_is_the_size_of_the_error() {
         let mut random = ChaCha8Rng::seed_from_u64(4);
-        let body = Inertia {
-            mass: 3.0,
-            com: Vector3::new(0.0, 0.0, 0.2),
-            tensor: Matrix3::identity() * 0.02,
-        };
-        let logs: Vec<f64> = (0..2000)
-            .map(|_| (with_errors(&body, 0.03, &mut random).mass / 3.0).ln())
-            .collect();
+        let body = Inertia { mass: 3.0, com: Vector3::new(0.0, 0.0, 0.2), tensor: Matrix3::identity() * 0.02 };
+        let logs: Vec<f64> = (0..2000).map(|_| (with_errors(&body, 0.03, &mut random).mass / 3.0).ln()).collect();
         let spread = (logs.iter().map(|log| log * log).sum::<f64>() / 2000.0).sqrt();
         assert!((0.05..0.1).contains(&spread), "{spread}");
         let (mut one, mut other) = (ChaCha8Rng::seed_from_u64(1), ChaCha8Rng::seed_from_u64(1));
@@ -178,11 +168,7 @@ mod tests {
     #[test]
     fn a_tool_is_drawn_in_place_of_a_payload() {
         let robot = seven_axis();
-        let tool = Inertia {
-            mass: 0.7,
-            com: Vector3::new(0.01, 0.0, 0.08),
-            tensor: Matrix3::identity() * 1e-3,
-        };
+        let tool = Inertia { mass: 0.7, com: Vector3::new(0.01, 0.0, 0.08), tensor: Matrix3::identity() * 1e-3 };
         let drawn = arm(with_tool(robot.urdf(), &robot.arm().tool_frame().name, &tool).expect("it can be"));
         let loaded = robot.arm().clone().with_payload(&tool);
         let last = robot.arm().dof() - 1;

@@ -15,11 +15,7 @@ fn model(noise: f64) -> Gp {
     let inputs: Vec<f64> = (0..2000 * DIM).map(|at| input(at / DIM, at % DIM)).collect();
     let targets: Vec<f64> = inputs.chunks_exact(DIM).map(|x| x[0] * x[1] + x[5].cos()).collect();
     let training = TrainingSet::new(DIM, &inputs, &targets).expect("valid");
-    let hyperparameters = Hyperparameters {
-        amplitude: 1.0,
-        lengths: Lengths::Isotropic(4.5),
-        noise,
-    };
+    let hyperparameters = Hyperparameters { amplitude: 1.0, lengths: Lengths::Isotropic(4.5), noise };
     Gp::with_hyperparameters(&training, &hyperparameters).expect("valid")
 }
 

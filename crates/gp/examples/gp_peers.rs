@@ -17,10 +17,7 @@ fn main() {
 fn fit(table: &str, starts: usize) {
     let (dim, inputs, targets) = read(table);
     let training = TrainingSet::new(dim, &inputs, &targets).expect("the table is valid");
-    let options = FitOptions {
-        starts,
-        ..FitOptions::default()
-    };
+    let options = FitOptions { starts, ..FitOptions::default() };
     let start = clock();
     let gp = Gp::fit(&training, &options).expect("it fits");
     println!(
@@ -34,11 +31,7 @@ fn fit(table: &str, starts: usize) {
 fn sparse(train: &str, test: &str, inducing: usize) {
     let (dim, inputs, targets) = read(train);
     let training = TrainingSet::new(dim, &inputs, &targets).expect("the table is valid");
-    let options = FitOptions {
-        inducing: Some(inducing),
-        lengths: LengthScales::PerInput,
-        ..FitOptions::default()
-    };
+    let options = FitOptions { inducing: Some(inducing), lengths: LengthScales::PerInput, ..FitOptions::default() };
     let start = clock();
     let gp = Gp::fit(&training, &options).expect("it fits");
     let seconds = clock() - start;

@@ -62,22 +62,10 @@ pub(crate) fn qr_factor(factor: MatRef<'_, f64>, rho: f64) -> Mat<f64> {
     let mut coefficients = Mat::zeros(block, r);
     let request = qr_in_place_scratch::<f64>(n + r, r, block, Par::Seq, Default::default());
     let mut buffer = MemBuffer::new(request);
-    qr_in_place(
-        stacked.as_mut(),
-        coefficients.as_mut(),
-        Par::Seq,
-        MemStack::new(&mut buffer),
-        Default::default(),
-    );
+    qr_in_place(stacked.as_mut(), coefficients.as_mut(), Par::Seq, MemStack::new(&mut buffer), Default::default());
     release_vectors();
     // The R of Householder's method may have negative diagonal entries; the Cholesky factor has none.
-    Mat::from_fn(r, r, |i, j| {
-        if i >= j {
-            stacked[(j, i)] * stacked[(j, j)].signum()
-        } else {
-            0.0
-        }
-    })
+    Mat::from_fn(r, r, |i, j| if i >= j { stacked[(j, i)] * stacked[(j, j)].signum() } else { 0.0 })
 }
 
 /// The inverse of a lower triangular matrix.

@@ -70,10 +70,7 @@ pub(crate) fn climb(
     start: &[f64],
     max_iterations: u64,
 ) -> Result<(f64, Vec<f64>), GpError> {
-    let climb = Climb {
-        likelihood,
-        seen: RefCell::default(),
-    };
+    let climb = Climb { likelihood, seen: RefCell::default() };
     let mut best = (f64::NEG_INFINITY, start.to_vec());
     let mut left = max_iterations;
     while left > 0 {
@@ -145,9 +142,7 @@ type Solver = LBFGS<MoreThuenteLineSearch<Vec<f64>, Vec<f64>, f64>, Vec<f64>, Ve
 /// L-BFGS, for a function whose gradient is of order one.
 fn solver() -> Result<Solver, Error> {
     let line_search = MoreThuenteLineSearch::new().with_width_tolerance(0.02)?;
-    LBFGS::new(line_search, MEMORY)
-        .with_tolerance_grad(1e-6)?
-        .with_tolerance_cost(1e-9)
+    LBFGS::new(line_search, MEMORY).with_tolerance_grad(1e-6)?.with_tolerance_cost(1e-9)
 }
 
 /// The problem as argmin wants it: owned by the executor, minimised, of order one.

@@ -41,15 +41,7 @@ pub struct Conditioning {
 
 impl fmt::Display for Conditioning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            samples,
-            rank,
-            relative_noise,
-            floor,
-            added,
-            neglected,
-            likelihood_gap,
-        } = self;
+        let Self { samples, rank, relative_noise, floor, added, neglected, likelihood_gap } = self;
         if let Some(gap) = likelihood_gap {
             let share = neglected / *samples as f64;
             write!(
@@ -58,10 +50,7 @@ impl fmt::Display for Conditioning {
                  the exact log marginal likelihood is at most {gap:.3} nats higher; "
             )?;
         }
-        write!(
-            f,
-            "kernel matrix of {samples} samples, numerical rank {rank} (neglected trace {neglected:.1e}): "
-        )?;
+        write!(f, "kernel matrix of {samples} samples, numerical rank {rank} (neglected trace {neglected:.1e}): ")?;
         if *added > 0.0 {
             write!(
                 f,
@@ -69,10 +58,7 @@ impl fmt::Display for Conditioning {
                  less noise than that was asked for, or fits the data"
             )
         } else {
-            write!(
-                f,
-                "noise is {relative_noise:.1e} of amplitude², above the floor of {floor:.1e}: nothing added"
-            )
+            write!(f, "noise is {relative_noise:.1e} of amplitude², above the floor of {floor:.1e}: nothing added")
         }
     }
 }

@@ -36,11 +36,7 @@ impl TrainingSet {
             let value = targets[row];
             return Err(GpError::Target { row, value });
         }
-        Ok(Self {
-            dim,
-            inputs: inputs.to_vec(),
-            targets: targets.to_vec(),
-        })
+        Ok(Self { dim, inputs: inputs.to_vec(), targets: targets.to_vec() })
     }
 
     /// Number of inputs per sample.
@@ -126,11 +122,7 @@ impl Hyperparameters {
         let positive = |name, value: f64| {
             let usable = value.is_normal() && value > 0.0 && value.recip().is_finite();
             let requirement = "positive and finite";
-            usable.then_some(()).ok_or(GpError::OutOfRange {
-                name,
-                value,
-                requirement,
-            })
+            usable.then_some(()).ok_or(GpError::OutOfRange { name, value, requirement })
         };
         positive("amplitude", self.amplitude)?;
         match &self.lengths {

@@ -37,12 +37,7 @@ impl Dense {
         solve_lower(outer.as_ref(), &mut alpha);
         let quadratic = sum_of_squares(&alpha);
         solve_lower_transposed(outer.as_ref(), &mut alpha);
-        Some(Self {
-            rho,
-            outer,
-            alpha,
-            quadratic,
-        })
+        Some(Self { rho, outer, alpha, quadratic })
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {

@@ -14,12 +14,7 @@ pub(crate) struct Evaluation {
 
 impl Evaluation {
     pub(crate) fn new(samples: usize, quadratic: f64, log_determinant: f64) -> Self {
-        Self {
-            samples,
-            quadratic,
-            log_determinant,
-            penalty: 0.0,
-        }
+        Self { samples, quadratic, log_determinant, penalty: 0.0 }
     }
 
     /// The evaluation for `all` samples, of which this is the evaluation for their n means: each sample occurs all / n times, and C has the

@@ -16,10 +16,7 @@ struct Tag {
 
 /// Writes `value` to a JSON file, completely or not at all: first to a temporary file in the same folder, which is then renamed.
 pub(crate) fn save(value: &impl Serialize, path: &Path) -> Result<(), GpError> {
-    let failed = |source| GpError::File {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = |source| GpError::File { path: path.to_owned(), source };
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -36,14 +33,8 @@ pub(crate) fn save(value: &impl Serialize, path: &Path) -> Result<(), GpError> {
 
 /// Reads a file of [`save`], of the version `expected`.
 pub(crate) fn load<T: DeserializeOwned>(path: &Path, expected: &str) -> Result<T, GpError> {
-    let text = fs::read_to_string(path).map_err(|source| GpError::File {
-        path: path.to_owned(),
-        source,
-    })?;
-    let malformed = |reason: String| GpError::Format {
-        path: path.to_owned(),
-        reason,
-    };
+    let text = fs::read_to_string(path).map_err(|source| GpError::File { path: path.to_owned(), source })?;
+    let malformed = |reason: String| GpError::Format { path: path.to_owned(), reason };
     // The version is checked first, so that a file of another version is not refused for a missing field.
     let tag: Tag = serde_json::from_str(&text).map_err(|error| malformed(error.to_string()))?;
     if tag.format != expected {

@@ -61,32 +61,17 @@ impl Points {
 /// Kernel values, at unit amplitude, between the point `x` (unscaled) and all `points` (divided by `lengths`); `out` has `points.len()` values.
 pub(crate) fn kernel_column(points: &Points, x: &[f64], lengths: &[f64], out: &mut [f64]) {
     debug_assert_eq!(out.len(), points.len());
-    on_widest(Column {
-        points,
-        x,
-        lengths,
-        out,
-    });
+    on_widest(Column { points, x, lengths, out });
 }
 
 /// Sum over all `points` of weight times kernel value at unit amplitude; `weights` has `points.padded_len()` values, zero in the padding.
 pub(crate) fn kernel_sum(points: &Points, x: &[f64], lengths: &[f64], weights: &[f64]) -> f64 {
-    on_widest(Sum {
-        points,
-        x,
-        lengths,
-        weights,
-    })
+    on_widest(Sum { points, x, lengths, weights })
 }
 
 /// Adds to `out[d]`, for every input `d`, the sum over `points` of weight times squared scaled distance along `d` from the scaled point `x`.
 pub(crate) fn weighted_squares(points: &Points, x: &[f64], weights: &[f64], out: &mut [f64]) {
-    on_widest(Squares {
-        points,
-        x,
-        weights,
-        out,
-    });
+    on_widest(Squares { points, x, weights, out });
 }
 
 struct Column<'a> {
@@ -180,11 +165,7 @@ struct Scaled<'a> {
 impl<'a> Scaled<'a> {
     #[inline(always)]
     fn new(x: &'a [f64], lengths: &'a [f64]) -> Self {
-        let mut this = Self {
-            x,
-            lengths,
-            values: [0.0; CHUNK],
-        };
+        let mut this = Self { x, lengths, values: [0.0; CHUNK] };
         this.divide(0);
         this
     }
@@ -315,9 +296,7 @@ mod tests {
     }
 
     fn compare_with_the_formula(dim: usize) {
-        let lengths: Vec<f64> = (0..dim)
-            .map(|d| [0.5, 2.0, 1.25][d % 3] * (1.0 + dim as f64 / 10.0))
-            .collect();
+        let lengths: Vec<f64> = (0..dim).map(|d| [0.5, 2.0, 1.25][d % 3] * (1.0 + dim as f64 / 10.0)).collect();
         let coordinate = |i: usize, d: usize| ((i * 7 + d * 3) % 11) as f64 * 0.1;
         let points = Points::new(37, dim, |i, d| coordinate(i, d) / lengths[d]);
         let x: Vec<f64> = (0..dim).map(|d| [0.3, -0.2, 0.9][d % 3]).collect();

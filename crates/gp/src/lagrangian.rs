@@ -40,13 +40,7 @@ pub struct LagrangianOptions {
 
 impl Default for LagrangianOptions {
     fn default() -> Self {
-        Self {
-            starts: 4,
-            max_iterations: 50,
-            search_samples: 96,
-            support: 250,
-            samples: 2000,
-        }
+        Self { starts: 4, max_iterations: 50, search_samples: 96, support: 250, samples: 2000 }
     }
 }
 
@@ -107,11 +101,7 @@ impl LagrangianGp {
             ("samples", options.samples),
         ] {
             if value == 0 {
-                return Err(GpError::OutOfRange {
-                    name,
-                    value: 0.0,
-                    requirement: "at least 1",
-                });
+                return Err(GpError::OutOfRange { name, value: 0.0, requirement: "at least 1" });
             }
         }
         let scales = samples.scales();
@@ -153,9 +143,8 @@ impl LagrangianGp {
         let noise = rho.iter().zip(units);
         let noise = noise.map(|(rho, unit)| (rho * factored.mean_variance).sqrt() * unit);
         let noise = noise.collect();
-        let (posterior, used) = Posterior::new(&prior, &rho, units, motions, factored, || {
-            samples.thinned(options.samples)
-        })?;
+        let (posterior, used) =
+            Posterior::new(&prior, &rho, units, motions, factored, || samples.thinned(options.samples))?;
         Ok(Self {
             prior,
             noise,

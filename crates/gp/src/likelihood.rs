@@ -24,22 +24,11 @@ pub(crate) struct Precision {
 
 impl Precision {
     /// For the search: the likelihood to 1e-5 of its terms where rounding allows.
-    pub(crate) const SEARCH: Self = Self {
-        neglected: 1e-5,
-        method: Method::Normal,
-        gradient: true,
-    };
+    pub(crate) const SEARCH: Self = Self { neglected: 1e-5, method: Method::Normal, gradient: true };
     /// For a search that needs no gradient.
-    pub(crate) const VALUE: Self = Self {
-        gradient: false,
-        ..Self::SEARCH
-    };
+    pub(crate) const VALUE: Self = Self { gradient: false, ..Self::SEARCH };
     /// For the posterior: as exact as rounding allows.
-    pub(crate) const POSTERIOR: Self = Self {
-        neglected: 1e-11,
-        method: Method::Orthogonal,
-        gradient: false,
-    };
+    pub(crate) const POSTERIOR: Self = Self { neglected: 1e-11, method: Method::Orthogonal, gradient: false };
 }
 
 /// Whether ρ is far enough above the rounding of the kernel matrix, n ε, that a solution of C α = y can be refined against the kernel itself.
@@ -106,10 +95,7 @@ impl Factored {
             return Self::Dense(dense);
         }
         // Rounding made C indefinite: ρ is near its floor and the rank high. Slower, but sure.
-        let stopping = Stopping {
-            max_rank: targets.len(),
-            ..stopping
-        };
+        let stopping = Stopping { max_rank: targets.len(), ..stopping };
         let pivoted = PivotedCholesky::new(points, stopping);
         let pivoted = pivoted.expect("a rank is at most the number of points");
         Self::LowRank(LowRank::new(pivoted, targets, rho, Method::Orthogonal))
@@ -165,9 +151,7 @@ mod tests {
     }
 
     fn targets(n: usize, noise: f64) -> Vec<f64> {
-        (0..n)
-            .map(|i| (0.11 * i as f64).sin() + noise * ((i * 53 % 97) as f64 / 97.0 - 0.5))
-            .collect()
+        (0..n).map(|i| (0.11 * i as f64).sin() + noise * ((i * 53 % 97) as f64 / 97.0 - 0.5)).collect()
     }
 
     #[test]
@@ -187,11 +171,7 @@ mod tests {
             let at = [0.3, -0.2, 0.5, f64::ln(rho)];
             let factored = |at: &[f64], neglected: f64| {
                 let points = points(n, scatter, &at[..DIM]);
-                let precision = Precision {
-                    neglected,
-                    method: Method::Orthogonal,
-                    gradient: true,
-                };
+                let precision = Precision { neglected, method: Method::Orthogonal, gradient: true };
                 let factored = Factored::new(&points, &y, at[DIM].exp(), precision, None);
                 (factored, points)
             };
@@ -268,10 +248,7 @@ mod tests {
             let below = bound.evaluation().log_likelihood(amplitude_squared);
             let gap = bound.gap(&y, amplitude_squared).expect("an approximation");
             assert!(below < exact && exact < below + gap, "{below} {exact} {gap}");
-            assert!(
-                below > last,
-                "more inducing points, a closer bound: {below} after {last}"
-            );
+            assert!(below > last, "more inducing points, a closer bound: {below} after {last}");
             last = below;
         }
     }
@@ -283,13 +260,8 @@ mod tests {
         for (scatter, rho, tolerance) in [(0.0, 1e-2, 1e-11), (0.0, 1e-6, 1e-9), (2.0, 1e-3, 1e-10)] {
             let y = targets(n, 0.1);
             let points = points(n, scatter, &[0.1, 0.2, 0.3]);
-            let stopping = Stopping {
-                trace: 1e-11 * rho,
-                pivot: PIVOT_FLOOR,
-                max_rank: n,
-                truncates: false,
-                keeps_kernel: false,
-            };
+            let stopping =
+                Stopping { trace: 1e-11 * rho, pivot: PIVOT_FLOOR, max_rank: n, truncates: false, keeps_kernel: false };
             let dense = Dense::new(&points, &y, rho).expect("definite");
             let expected = dense.evaluation().profiled();
             for method in [Method::Normal, Method::Orthogonal] {
@@ -306,20 +278,12 @@ mod tests {
     fn pivoted_factor_reproduces_the_kernel_matrix() {
         let n = 120;
         let points = points(n, 0.5, &[0.0, 0.0, 0.0]);
-        let stopping = Stopping {
-            trace: 0.0,
-            pivot: PIVOT_FLOOR,
-            max_rank: n,
-            truncates: false,
-            keeps_kernel: false,
-        };
+        let stopping = Stopping { trace: 0.0, pivot: PIVOT_FLOOR, max_rank: n, truncates: false, keeps_kernel: false };
         let pivoted = PivotedCholesky::new(&points, stopping).expect("within n");
         let product = pivoted.factor() * pivoted.factor().transpose();
         for i in 0..n {
             for j in 0..n {
-                let square: f64 = (0..DIM)
-                    .map(|d| (points.coordinate(i, d) - points.coordinate(j, d)).powi(2))
-                    .sum();
+                let square: f64 = (0..DIM).map(|d| (points.coordinate(i, d) - points.coordinate(j, d)).powi(2)).sum();
                 assert!((product[(i, j)] - (-0.5 * square).exp()).abs() < 1e-13);
             }
         }

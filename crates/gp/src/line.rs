@@ -55,21 +55,13 @@ struct Outlook {
 
 impl Outlook {
     fn unknown(next: f64) -> Self {
-        Self {
-            next: Some(next),
-            top: next,
-            curvature: None,
-        }
+        Self { next: Some(next), top: next, curvature: None }
     }
 }
 
 impl<F: FnMut(f64) -> f64> Line<F> {
     pub(crate) fn new(range: (f64, f64), function: F) -> Self {
-        Self {
-            function,
-            range,
-            known: Vec::new(),
-        }
+        Self { function, range, known: Vec::new() }
     }
 
     /// Evaluates the function at `at`, or at the end of the range; `false` if it is known there. A value that is no number counts
@@ -93,20 +85,11 @@ impl<F: FnMut(f64) -> f64> Line<F> {
             let best = (1..self.known.len()).fold(0, better);
             let (at, value) = self.known[best];
             let inside = best > 0 && best + 1 < self.known.len();
-            let outlook = if inside {
-                self.within(best, goal)
-            } else {
-                self.beyond(best, curvature, goal)
-            };
+            let outlook = if inside { self.within(best, goal) } else { self.beyond(best, curvature, goal) };
             let more = self.known.len() < VALUES && value > f64::NEG_INFINITY;
             if !(more && outlook.next.is_some_and(|next| self.look(next))) {
                 let top = if outlook.next.is_none() { outlook.top } else { at };
-                return Maximum {
-                    at,
-                    value,
-                    top: top.clamp(self.range.0, self.range.1),
-                    curvature: outlook.curvature,
-                };
+                return Maximum { at, value, top: top.clamp(self.range.0, self.range.1), curvature: outlook.curvature };
             }
         }
     }
@@ -117,18 +100,10 @@ impl<F: FnMut(f64) -> f64> Line<F> {
         let distance = |side: usize| (self.known[side].0 - at).abs();
         let Some((vertex, curvature)) = vertex(&self.known[best - 1..=best + 1]) else {
             // Values that are infinitely low tell only where not to look.
-            let side = if distance(best - 1) > distance(best + 1) {
-                best - 1
-            } else {
-                best + 1
-            };
+            let side = if distance(best - 1) > distance(best + 1) { best - 1 } else { best + 1 };
             return Outlook::unknown(0.5 * (at + self.known[side].0));
         };
-        let outlook = |next: Option<f64>| Outlook {
-            next,
-            top: vertex,
-            curvature: Some(curvature),
-        };
+        let outlook = |next: Option<f64>| Outlook { next, top: vertex, curvature: Some(curvature) };
         let (side, other, sign) = match vertex < at {
             true => (best - 1, best + 1, -1.0),
             false => (best + 1, best - 1, 1.0),
@@ -156,20 +131,14 @@ impl<F: FnMut(f64) -> f64> Line<F> {
     fn beyond(&self, best: usize, curvature: Option<f64>, goal: Goal) -> Outlook {
         let (at, value) = self.known[best];
         let Some(&(other, lower)) = self.known.get(if best == 0 { 1 } else { best - 1 }) else {
-            return Outlook {
-                next: None,
-                top: at,
-                curvature: None,
-            };
+            return Outlook { next: None, top: at, curvature: None };
         };
         let distance = at - other;
         let three = match best {
             0 => self.known.get(..3),
             _ => best.checked_sub(2).map(|first| &self.known[first..]),
         };
-        let measured = three
-            .and_then(vertex)
-            .map(|(vertex, curvature)| (vertex, curvature, 0.0));
+        let measured = three.and_then(vertex).map(|(vertex, curvature)| (vertex, curvature, 0.0));
         let expected = || {
             let from_middle = (value - lower) / (distance * curvature?);
             Some((0.5 * (at + other) + from_middle, curvature?, DOUBT * from_middle.abs()))
@@ -179,11 +148,7 @@ impl<F: FnMut(f64) -> f64> Line<F> {
             return Outlook::unknown(at + 2.0 * distance);
         };
         let gain = 0.5 * curvature * ((vertex - at).abs() + doubt).powi(2);
-        let outlook = |next: Option<f64>| Outlook {
-            next,
-            top: vertex,
-            curvature: Some(curvature),
-        };
+        let outlook = |next: Option<f64>| Outlook { next, top: vertex, curvature: Some(curvature) };
         if gain <= goal.negligible {
             let step = goal.near.map(|near| (2.0 * near / curvature).sqrt());
             return outlook(step.map(|step| at + step.copysign(distance)));
@@ -229,10 +194,7 @@ mod tests {
     #[test]
     fn a_parabola_takes_one_value_more_than_it_has_coefficients() {
         let (found, values) = climbed(|x| 3.0 - 50.0 * (x - 0.8).powi(2), 1e-9);
-        assert!(
-            (found.at - 0.8).abs() < 1e-9 && (found.value - 3.0).abs() < 1e-9,
-            "{found:?}"
-        );
+        assert!((found.at - 0.8).abs() < 1e-9 && (found.value - 3.0).abs() < 1e-9, "{found:?}");
         assert!((found.curvature.expect("known") - 100.0).abs() < 1e-6);
         assert_eq!(values, 4);
     }
@@ -246,10 +208,7 @@ mod tests {
         });
         line.look(0.25);
         line.look(0.35);
-        let goal = Goal {
-            negligible: 2.0,
-            near: None,
-        };
+        let goal = Goal { negligible: 2.0, near: None };
         let found = line.climb(Some(1000.0), goal);
         assert_eq!(values, 2);
         assert!((found.value + 1.25).abs() < 1e-9);
@@ -258,24 +217,13 @@ mod tests {
     #[test]
     fn hills_far_off_skew_or_cut_off_are_climbed() {
         for (name, function, maximum) in [
-            (
-                "far to the left",
-                (|x: f64| -(x + 12.0).cosh().ln()) as fn(f64) -> f64,
-                -12.0,
-            ),
+            ("far to the left", (|x: f64| -(x + 12.0).cosh().ln()) as fn(f64) -> f64, -12.0),
             ("skew", |x: f64| 100.0 * (x - x.exp()), 0.0),
             ("at the end of the range", |x: f64| x, 20.0),
-            (
-                "no number on one side",
-                |x: f64| if x < 3.0 { x } else { f64::NAN },
-                3.0,
-            ),
+            ("no number on one side", |x: f64| if x < 3.0 { x } else { f64::NAN }, 3.0),
         ] {
             let (found, values) = climbed(function, 1e-3);
-            assert!(
-                (found.at - maximum).abs() < 0.1,
-                "{name}: {found:?} after {values} values"
-            );
+            assert!((found.at - maximum).abs() < 0.1, "{name}: {found:?} after {values} values");
         }
     }
 

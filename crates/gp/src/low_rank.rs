@@ -80,16 +80,7 @@ impl LowRank {
         }
         let quadratic = sum_of_squares(&misfit) / rho + sum_of_squares(&coefficients);
         let log_determinant = (n - r) as f64 * rho.ln() + log_determinant(outer.as_ref());
-        Self {
-            pivoted,
-            rho,
-            outer,
-            coefficients,
-            misfit,
-            quadratic,
-            log_determinant,
-            refined: None,
-        }
+        Self { pivoted, rho, outer, coefficients, misfit, quadratic, log_determinant, refined: None }
     }
 
     /// Solves for α with the kernel matrix itself in place of F Fᵀ, by refinement: each step gains the factor (|K - F Fᵀ| + n ε) / ρ.
@@ -160,11 +151,7 @@ impl LowRank {
     ///
     /// Source: Titsias 2009, "Variational learning of inducing variables in sparse Gaussian processes", eq. 9.
     fn penalty(&self) -> f64 {
-        if self.pivoted.truncated {
-            self.pivoted.neglected / (2.0 * self.rho)
-        } else {
-            0.0
-        }
+        if self.pivoted.truncated { self.pivoted.neglected / (2.0 * self.rho) } else { 0.0 }
     }
 
     /// The distance of the bounds of the exact likelihood, from below and from above: Titsias 2014, "Variational inference

@@ -56,25 +56,13 @@ impl Gp {
     pub fn fit(training: &TrainingSet, options: &FitOptions) -> Result<Self, GpError> {
         let asked = options.min_relative_noise;
         if !(0.0..=1.0).contains(&asked) {
-            return Err(GpError::OutOfRange {
-                name: "min_relative_noise",
-                value: asked,
-                requirement: "from 0 to 1",
-            });
+            return Err(GpError::OutOfRange { name: "min_relative_noise", value: asked, requirement: "from 0 to 1" });
         }
         if options.starts == 0 {
-            return Err(GpError::OutOfRange {
-                name: "starts",
-                value: 0.0,
-                requirement: "at least 1",
-            });
+            return Err(GpError::OutOfRange { name: "starts", value: 0.0, requirement: "at least 1" });
         }
         if options.inducing == Some(0) {
-            return Err(GpError::OutOfRange {
-                name: "inducing",
-                value: 0.0,
-                requirement: "at least 1",
-            });
+            return Err(GpError::OutOfRange { name: "inducing", value: 0.0, requirement: "at least 1" });
         }
         let floor = floor(training.samples()).max(asked);
         let scale = target_scale(training);
@@ -90,9 +78,7 @@ impl Gp {
         // Within a tenth of a per cent of the bound counts as at it: the smooth bound is never quite reached.
         let added = if found.rho <= 1.001 * floor { floor } else { 0.0 };
         let noise = (found.rho, floor, added);
-        let factored = found
-            .factored
-            .unwrap_or_else(|| factored(&unit, &lengths, found.rho, options.inducing));
+        let factored = found.factored.unwrap_or_else(|| factored(&unit, &lengths, found.rho, options.inducing));
         Self::condition(&unit, scale, None, lengths, noise, factored)
     }
 
@@ -147,21 +133,9 @@ impl Gp {
         let (rank, neglected) = factored.rank_and_neglected();
         let likelihood_gap = factored.gap(unit.targets(), unit_amplitude.powi(2));
         Ok(Self {
-            hyperparameters: Hyperparameters {
-                amplitude,
-                noise: amplitude * rho.sqrt(),
-                lengths,
-            },
+            hyperparameters: Hyperparameters { amplitude, noise: amplitude * rho.sqrt(), lengths },
             log_marginal_likelihood,
-            conditioning: Conditioning {
-                samples,
-                rank,
-                relative_noise: rho,
-                floor,
-                added,
-                neglected,
-                likelihood_gap,
-            },
+            conditioning: Conditioning { samples, rank, relative_noise: rho, floor, added, neglected, likelihood_gap },
             posterior: Posterior::of(&factored, &points, each, scale),
         })
     }
@@ -174,11 +148,7 @@ impl Gp {
         };
         Self {
             posterior: Posterior::empty(lengths.each(training.dim())),
-            hyperparameters: Hyperparameters {
-                amplitude: 0.0,
-                lengths,
-                noise: 0.0,
-            },
+            hyperparameters: Hyperparameters { amplitude: 0.0, lengths, noise: 0.0 },
             log_marginal_likelihood: f64::INFINITY,
             conditioning: Conditioning {
                 samples: training.samples(),

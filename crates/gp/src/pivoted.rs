@@ -152,13 +152,7 @@ impl PivotedCholesky {
             candidates.copy_point(t, &mut point);
             kernel_column(&candidates, &point, &unit, covariance.col_as_slice_mut(t));
         }
-        matmul(
-            covariance.as_mut(),
-            Accum::Add,
-            earlier.as_ref(),
-            earlier.transpose(),
-            -1.0,
-        );
+        matmul(covariance.as_mut(), Accum::Add, earlier.as_ref(), earlier.transpose(), -1.0);
         let mut left: Vec<f64> = worthy.iter().map(|&i| residual[i]).collect();
         let mut taken: Vec<usize> = Vec::with_capacity(BLOCK);
         let mut columns: Vec<Vec<f64>> = Vec::with_capacity(BLOCK);
@@ -183,9 +177,7 @@ impl PivotedCholesky {
             taken.push(t);
             columns.push(column);
         }
-        let triangle = Mat::from_fn(taken.len(), taken.len(), |s, t| {
-            if s >= t { columns[t][taken[s]] } else { 0.0 }
-        });
+        let triangle = Mat::from_fn(taken.len(), taken.len(), |s, t| if s >= t { columns[t][taken[s]] } else { 0.0 });
         (taken.iter().map(|&t| worthy[t]).collect(), triangle)
     }
 
@@ -206,8 +198,6 @@ impl PivotedCholesky {
     /// The rows of F at the pivots, rank × rank, lower triangular: the Cholesky factor of K there.
     pub(crate) fn triangle(&self) -> Mat<f64> {
         let factor = self.factor();
-        Mat::from_fn(self.rank(), self.rank(), |i, j| {
-            if i >= j { factor[(self.pivots[i], j)] } else { 0.0 }
-        })
+        Mat::from_fn(self.rank(), self.rank(), |i, j| if i >= j { factor[(self.pivots[i], j)] } else { 0.0 })
     }
 }

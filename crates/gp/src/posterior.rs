@@ -47,12 +47,7 @@ impl Triangle {
 pub(crate) enum VarianceFactors {
     /// The indices of the pivots among the points; the Cholesky factor L_S of their kernel matrix; G with G Gᵀ = Fᵀ F
     /// + ρ I; ρ.
-    LowRank {
-        pivots: Vec<usize>,
-        inner: Triangle,
-        outer: Triangle,
-        rho: f64,
-    },
+    LowRank { pivots: Vec<usize>, inner: Triangle, outer: Triangle, rho: f64 },
     /// G with G Gᵀ = C.
     Dense { outer: Triangle },
 }
@@ -79,13 +74,7 @@ impl Posterior {
             }
             _ => None,
         };
-        Self {
-            points,
-            lengths,
-            weights,
-            variance,
-            pivots,
-        }
+        Self { points, lengths, weights, variance, pivots }
     }
 
     /// From C factored for `points`; weights are multiplied by `target_scale`.

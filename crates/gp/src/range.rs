@@ -154,16 +154,11 @@ mod tests {
 
     /// Samples of a smooth path in three inputs, with a target.
     fn gp(length: f64, noise: f64) -> Gp {
-        let inputs: Vec<f64> = (0..600)
-            .map(|at| (f64::from(at / 3) * 0.05 * (1.0 + 0.4 * f64::from(at % 3))).sin())
-            .collect();
+        let inputs: Vec<f64> =
+            (0..600).map(|at| (f64::from(at / 3) * 0.05 * (1.0 + 0.4 * f64::from(at % 3))).sin()).collect();
         let targets: Vec<f64> = inputs.chunks_exact(3).map(|x| x[0] * x[1] + x[2]).collect();
         let training = TrainingSet::new(3, &inputs, &targets).expect("valid");
-        let hyperparameters = Hyperparameters {
-            amplitude: 2.0,
-            lengths: Lengths::Isotropic(length),
-            noise,
-        };
+        let hyperparameters = Hyperparameters { amplitude: 2.0, lengths: Lengths::Isotropic(length), noise };
         Gp::with_hyperparameters(&training, &hyperparameters).expect("valid")
     }
 
@@ -182,30 +177,21 @@ mod tests {
                 let exact = gp.mean_and_variance(&x, &mut workspace).1 / 4.0;
                 let share = range.variance_share(&x);
                 let tolerance = if noise > 0.0 { 0.01 * exact } else { 1e-9 };
-                assert!(
-                    share > exact - tolerance,
-                    "{length} {noise} {step}: {share} below {exact}"
-                );
+                assert!(share > exact - tolerance, "{length} {noise} {step}: {share} below {exact}");
                 assert!((0.0..=1.0).contains(&share));
             }
             assert_eq!(range.variance_share(&[1e6; 3]), 1.0);
             assert!(range.variance_share(&[f64::NAN, 0.0, 0.0]).is_nan());
         }
         let range = gp(2.0, 0.0).range();
-        assert!(
-            range.points() < MOST && range.mean_variance_share() < LARGEST_SHARE,
-            "{range:?}"
-        );
+        assert!(range.points() < MOST && range.mean_variance_share() < LARGEST_SHARE, "{range:?}");
         // On the path itself, between samples.
         let at = |time: f64| [time.sin(), (1.4 * time).sin(), (1.8 * time).sin()];
         for step in 0..90 {
             let share = range.variance_share(&at(0.1 * f64::from(step)));
             assert!(share < 0.05, "{step}: {share}");
         }
-        assert!(
-            gp(0.03, 0.0).range().mean_variance_share() > LARGEST_SHARE,
-            "too many points would be needed"
-        );
+        assert!(gp(0.03, 0.0).range().mean_variance_share() > LARGEST_SHARE, "too many points would be needed");
     }
 
     #[test]

@@ -138,13 +138,7 @@ struct Likelihood<'a> {
 
 impl<'a> Likelihood<'a> {
     fn new(training: &'a TrainingSet, bounds: &'a Bounds, options: &FitOptions, tolerance: f64) -> Self {
-        Self {
-            training,
-            bounds,
-            lengths: options.lengths,
-            inducing: options.inducing,
-            tolerance,
-        }
+        Self { training, bounds, lengths: options.lengths, inducing: options.inducing, tolerance }
     }
 
     fn factored(&self, free: &[f64], precision: Precision) -> (Factored, Points) {
@@ -171,11 +165,7 @@ impl<'a> Likelihood<'a> {
             *value = value.exp();
         }
         let rho = lengths.pop().unwrap_or(f64::NAN);
-        Found {
-            lengths,
-            rho,
-            factored: None,
-        }
+        Found { lengths, rho, factored: None }
     }
 }
 

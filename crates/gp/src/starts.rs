@@ -66,18 +66,13 @@ pub(crate) struct Bounds {
 impl Bounds {
     /// Lengths from 1e-4 to 1e6 times the data's scale; relative noise from `floor` to 1e4.
     pub(crate) fn new(shape: &[f64], floor: f64) -> Self {
-        let ranges = shape
-            .iter()
-            .map(|length| (length * 1e-4, length * 1e6))
-            .chain([(floor, 1e4)]);
+        let ranges = shape.iter().map(|length| (length * 1e-4, length * 1e6)).chain([(floor, 1e4)]);
         Self::of_logs(ranges.map(|(low, high)| (low.ln(), high.ln())))
     }
 
     /// Bounds from the lowest and the highest logarithm of each parameter.
     pub(crate) fn of_logs(ranges: impl Iterator<Item = (f64, f64)>) -> Self {
-        let (middles, halves) = ranges
-            .map(|(low, high)| ((low + high) / 2.0, (high - low) / 2.0))
-            .unzip();
+        let (middles, halves) = ranges.map(|(low, high)| ((low + high) / 2.0, (high - low) / 2.0)).unzip();
         Self { middles, halves }
     }
 

@@ -11,10 +11,7 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/peers
 
 /// File, and the log marginal likelihood of scikit-learn 1.9.1 with the settings of peers.py, which stops where
 /// Cholesky factorisation first fails.
-const PEERS: [(&str, f64); 2] = [
-    ("ijl_joint2_train_A.csv", 8190.03),
-    ("ijl_joint2_train_ABC.csv", 20581.65),
-];
+const PEERS: [(&str, f64); 2] = [("ijl_joint2_train_A.csv", 8190.03), ("ijl_joint2_train_ABC.csv", 20581.65)];
 
 #[test]
 #[ignore = "needs ../shared"]

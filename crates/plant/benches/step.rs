@@ -24,10 +24,7 @@ fn plant(options: PlantOptions) -> Plant {
 
 #[divan::bench(args = [1, 2, 3, 4])]
 fn smooth(bencher: Bencher, order: usize) {
-    let mut plant = plant(PlantOptions {
-        order,
-        ..PlantOptions::default()
-    });
+    let mut plant = plant(PlantOptions { order, ..PlantOptions::default() });
     bencher.bench_local(|| {
         plant.set_state(&START, &START).expect("six finite values");
         plant.step(&[0.0; 6])
@@ -37,10 +34,7 @@ fn smooth(bencher: Bencher, order: usize) {
 /// Joint 1 at rest under a torque below its friction, the others sliding.
 #[divan::bench]
 fn one_of_six_stuck(bencher: Bencher) {
-    let mut plant = plant(PlantOptions {
-        coulomb: vec![1e3, 0.1, 0.1, 1e-3, 1e-3, 1e-3],
-        ..PlantOptions::default()
-    });
+    let mut plant = plant(PlantOptions { coulomb: vec![1e3, 0.1, 0.1, 1e-3, 1e-3, 1e-3], ..PlantOptions::default() });
     let mut qd = START;
     qd[0] = 0.0;
     bencher.bench_local(|| {
@@ -52,10 +46,7 @@ fn one_of_six_stuck(bencher: Bencher) {
 /// Joint 1 stops within the step.
 #[divan::bench]
 fn one_of_six_stopping(bencher: Bencher) {
-    let mut plant = plant(PlantOptions {
-        coulomb: vec![100.0, 0.1, 0.1, 1e-3, 1e-3, 1e-3],
-        ..PlantOptions::default()
-    });
+    let mut plant = plant(PlantOptions { coulomb: vec![100.0, 0.1, 0.1, 1e-3, 1e-3, 1e-3], ..PlantOptions::default() });
     let mut qd = START;
     qd[0] = 0.01;
     bencher.bench_local(|| {

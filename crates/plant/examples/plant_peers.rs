@@ -48,9 +48,7 @@ struct Track {
 
 fn reference(n: usize, time: f64) -> [Vec<f64>; 3] {
     let each = |value: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
-        (0..n)
-            .map(|i| value(0.5 - 0.05 * i as f64, std::f64::consts::TAU * (0.4 + 0.07 * i as f64)))
-            .collect()
+        (0..n).map(|i| value(0.5 - 0.05 * i as f64, std::f64::consts::TAU * (0.4 + 0.07 * i as f64))).collect()
     };
     [
         each(&|amplitude, omega| amplitude * (omega * time).sin()),
@@ -60,9 +58,7 @@ fn reference(n: usize, time: f64) -> [Vec<f64>; 3] {
 }
 
 fn command(gains: &[Vec<f64>; 2], [wanted, speed, torque]: [&[f64]; 3], q: &[f64], qd: &[f64]) -> Vec<f64> {
-    (0..q.len())
-        .map(|i| torque[i] + (gains[0][i] * (wanted[i] - q[i]) + gains[1][i] * (speed[i] - qd[i])))
-        .collect()
+    (0..q.len()).map(|i| torque[i] + (gains[0][i] * (wanted[i] - q[i]) + gains[1][i] * (speed[i] - qd[i]))).collect()
 }
 
 fn exact_track(arm: &Arm) -> Track {
@@ -126,15 +122,10 @@ fn table(track: &Track) -> String {
 
 /// The plant's error along the track (rad), and the median time of one of its steps (ns).
 fn plant(arm: &Arm, order: usize, track: &Track) -> (f64, f64) {
-    let options = PlantOptions {
-        order,
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { order, ..PlantOptions::default() };
     let mut worst = 0.0_f64;
     let mut plant = Plant::new(arm, &options).expect("the robot can be simulated");
-    plant
-        .set_state(&track.start[0], &track.start[1])
-        .expect("finite values");
+    plant.set_state(&track.start[0], &track.start[1]).expect("finite values");
     let mut times = Vec::with_capacity(track.rows.len());
     for [wanted, speed, torque, exact] in &track.rows {
         let tau = command(&track.gains, [wanted, speed, torque], plant.q(), plant.qd());

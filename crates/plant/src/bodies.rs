@@ -44,11 +44,7 @@ pub(crate) fn simulable_inertias(arm: &Arm) -> Result<Vec<Inertia>, PlantError> 
             inertias[parent].tensor -= r * moved * r.transpose();
         }
         if !is_simulable(&inertias[i].tensor) {
-            return Err(PlantError::Singular {
-                link: joint.link_name.clone(),
-                smallest,
-                largest,
-            });
+            return Err(PlantError::Singular { link: joint.link_name.clone(), smallest, largest });
         }
     }
     Ok(inertias)

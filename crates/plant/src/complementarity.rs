@@ -57,9 +57,7 @@ fn solve_within(response: &DMatrix<f64>, free: &[f64], levels: &[f64], places: &
         return;
     }
     let block = DMatrix::from_fn(within.len(), within.len(), |a, b| response[(within[a], within[b])]);
-    let wanted = DMatrix::from_fn(within.len(), 1, |a, _| {
-        -acceleration(response, free, torques, within[a])
-    });
+    let wanted = DMatrix::from_fn(within.len(), 1, |a, _| -acceleration(response, free, torques, within[a]));
     // `response` is positive definite, so that the solution exists.
     if let Some(solution) = block.lu().solve(&wanted) {
         for (a, &i) in within.iter().enumerate() {
@@ -69,12 +67,7 @@ fn solve_within(response: &DMatrix<f64>, free: &[f64], levels: &[f64], places: &
 }
 
 fn acceleration(response: &DMatrix<f64>, free: &[f64], torques: &[f64], i: usize) -> f64 {
-    free[i]
-        + torques
-            .iter()
-            .enumerate()
-            .map(|(j, torque)| response[(i, j)] * torque)
-            .sum::<f64>()
+    free[i] + torques.iter().enumerate().map(|(j, torque)| response[(i, j)] * torque).sum::<f64>()
 }
 
 #[cfg(test)]
@@ -87,9 +80,7 @@ mod tests {
     fn every_joint_rests_or_gives_way() {
         let mut seed = 1_u64;
         let mut random = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
         };
         for case in 0..500 {

@@ -53,9 +53,8 @@ impl Engine {
         let base = parent;
         for (joint, inertia) in arm.joints().iter().zip(&inertias) {
             // An arm at rest in balance would fall asleep and then ignore its torques.
-            let body = RigidBodyBuilder::dynamic()
-                .can_sleep(false)
-                .additional_mass_properties(mass_properties(inertia));
+            let body =
+                RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(mass_properties(inertia));
             let link = bodies.insert(body);
             let locked = match joint.kind {
                 JointKind::Revolute => JointAxesMask::LOCKED_REVOLUTE_AXES,
@@ -199,9 +198,7 @@ impl Engine {
 }
 
 fn multibody_mut(joints: &mut MultibodyJointSet, index: MultibodyIndex) -> &mut Multibody {
-    joints
-        .get_multibody_mut_internal(index)
-        .expect("the multibody lives as long as its engine")
+    joints.get_multibody_mut_internal(index).expect("the multibody lives as long as its engine")
 }
 
 /// rapier's own constructor drops negative moments of a tensor; this one keeps the tensor unchanged.

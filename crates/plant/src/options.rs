@@ -24,12 +24,7 @@ pub struct PlantOptions {
 impl Default for PlantOptions {
     /// A 1 ms step of order 3, without friction.
     fn default() -> Self {
-        Self {
-            step: 1e-3,
-            order: 3,
-            viscous: Vec::new(),
-            coulomb: Vec::new(),
-        }
+        Self { step: 1e-3, order: 3, viscous: Vec::new(), coulomb: Vec::new() }
     }
 }
 
@@ -41,10 +36,7 @@ impl PlantOptions {
             return Err(PlantError::Step { step });
         }
         if !(1..=LARGEST_ORDER).contains(&self.order) {
-            return Err(PlantError::Order {
-                order: self.order,
-                largest: LARGEST_ORDER,
-            });
+            return Err(PlantError::Order { order: self.order, largest: LARGEST_ORDER });
         }
         if !arm.gravity().iter().all(|g| g.is_finite()) {
             return Err(PlantError::Gravity);
@@ -63,11 +55,7 @@ fn check_values(what: &'static str, values: &[f64], arm: &Arm) -> Result<(), Pla
     check_count(what, values, arm.dof())?;
     for (joint, &value) in arm.joints().iter().zip(values) {
         if !(value.is_finite() && value >= 0.0) {
-            return Err(PlantError::Value {
-                what,
-                joint: joint.name.clone(),
-                value,
-            });
+            return Err(PlantError::Value { what, joint: joint.name.clone(), value });
         }
     }
     Ok(())
@@ -78,23 +66,15 @@ pub(crate) fn check_count(what: &'static str, values: &[f64], expected: usize) -
     if values.len() == expected {
         return Ok(());
     }
-    Err(PlantError::Count {
-        what,
-        expected,
-        found: values.len(),
-    })
+    Err(PlantError::Count { what, expected, found: values.len() })
 }
 
 /// Weights of the polynomial extrapolation to a step of zero from steps of 1, 1/2, … 1/order.
 ///
 /// Source: Aitken-Neville for the harmonic sequence (Hairer, Nørsett and Wanner 1993, II.9), as weights.
 pub(crate) fn extrapolation_weights(order: usize) -> Vec<f64> {
-    let weight = |j: usize| -> f64 {
-        (1..=order)
-            .filter(|&i| i != j)
-            .map(|i| j as f64 / (j as f64 - i as f64))
-            .product()
-    };
+    let weight =
+        |j: usize| -> f64 { (1..=order).filter(|&i| i != j).map(|i| j as f64 / (j as f64 - i as f64)).product() };
     (1..=order).map(weight).collect()
 }
 

@@ -152,8 +152,7 @@ impl Plant {
             self.settle(tau);
         }
         for (i, &torque) in tau.iter().enumerate() {
-            self.engine
-                .drive(i, torque + self.friction.torque(i), self.friction.is_stuck(i));
+            self.engine.drive(i, torque + self.friction.torque(i), self.friction.is_stuck(i));
         }
         self.engine.probe(&self.q, &self.qd, qdd);
         Ok(())
@@ -189,10 +188,7 @@ impl Plant {
         let is_bounded = |(q, qd): (&f64, &f64)| q.is_finite() && qd.abs() < FASTEST;
         match q.iter().zip(qd).position(|joint| !is_bounded(joint)) {
             None => Ok(()),
-            Some(i) => Err(PlantError::Diverged {
-                joint: self.names[i].clone(),
-                time: self.time(),
-            }),
+            Some(i) => Err(PlantError::Diverged { joint: self.names[i].clone(), time: self.time() }),
         }
     }
 }

@@ -75,11 +75,7 @@ pub struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     pub fn new(arm: &'a Arm) -> Self {
-        Self {
-            arm,
-            workspace: Workspace::new(arm),
-            viscous: vec![0.0; arm.dof()],
-        }
+        Self { arm, workspace: Workspace::new(arm), viscous: vec![0.0; arm.dof()] }
     }
 
     pub fn accelerations(&mut self, q: &[f64], qd: &[f64], tau: &[f64]) -> Vec<f64> {
@@ -128,10 +124,7 @@ impl Random {
     }
 
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }

@@ -94,10 +94,7 @@ impl Listener for Channel {
 
     fn recordings(&self, notes: &Notes) {
         for note in notes.iter() {
-            self.send(Message::Note(
-                in_python(&format!("{}: {}", note.file, note.text)),
-                note.weight == "warning",
-            ));
+            self.send(Message::Note(in_python(&format!("{}: {}", note.file, note.text)), note.weight == "warning"));
         }
     }
 }
@@ -135,19 +132,14 @@ impl Outcome {
     /// The corrected model as TOML.
     fn toml(&self) -> PyResult<String> {
         self.searched()?;
-        let file = EffectFile {
-            robot: Some(self.study.arm.name().to_owned()),
-            effects: self.study.effects.clone(),
-        };
+        let file = EffectFile { robot: Some(self.study.arm.name().to_owned()), effects: self.study.effects.clone() };
         file.to_text().map_err(|error| raised(&error))
     }
 
     /// The corrected model as URDF, and what it cannot hold.
     fn urdf(&self) -> PyResult<(String, Vec<String>)> {
         self.searched()?;
-        let Diagnosed {
-            robot, arm, effects, ..
-        } = &self.study;
+        let Diagnosed { robot, arm, effects, .. } = &self.study;
         let export = urdf_file::corrected_urdf(&robot.text, arm, effects).map_err(|error| raised(&error))?;
         Ok((export.text, export.omitted))
     }
@@ -218,12 +210,7 @@ pub fn diagnose(
     };
     let request = Request {
         robot: urdf,
-        chain: ChainOptions {
-            base,
-            tip,
-            locks,
-            recorded: Vec::new(),
-        },
+        chain: ChainOptions { base, tip, locks, recorded: Vec::new() },
         recordings: Recordings {
             before: all_given(before)?,
             train: all_given(train)?,
@@ -243,10 +230,7 @@ pub fn diagnose(
     };
     let (sender, receiver) = channel();
     let is_abandoned = Arc::new(AtomicBool::new(false));
-    let channel = Channel {
-        sender,
-        is_abandoned: Arc::clone(&is_abandoned),
-    };
+    let channel = Channel { sender, is_abandoned: Arc::clone(&is_abandoned) };
     let run = move || {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.context("starting threads")?.install(|| request.run(&channel))

@@ -20,15 +20,8 @@ impl Dynamics {
     #[new]
     #[pyo3(signature = (urdf, base, tip, locks))]
     fn new(urdf: &str, base: Option<String>, tip: Option<String>, locks: Vec<(String, f64)>) -> PyResult<Self> {
-        let options = ChainOptions {
-            base,
-            tip,
-            locks,
-            recorded: Vec::new(),
-        };
-        let arm = robot::named_robot(urdf)
-            .and_then(|robot| robot.arm(&options))
-            .map_err(|error| raised(&error))?;
+        let options = ChainOptions { base, tip, locks, recorded: Vec::new() };
+        let arm = robot::named_robot(urdf).and_then(|robot| robot.arm(&options)).map_err(|error| raised(&error))?;
         Ok(Self { arm })
     }
 

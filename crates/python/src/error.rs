@@ -17,10 +17,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("--urdf-accuracy", "urdf_accuracy"),
     ("--torque-accuracy", "torque_accuracy"),
     ("--verbose lists them", "the result's notes list them"),
-    (
-        "testbed inspect --json lists them",
-        "testbed inspect --json FILE lists them",
-    ),
+    ("testbed inspect --json lists them", "testbed inspect --json FILE lists them"),
     ("--held-out", "held_out"),
     ("--torque-lag", "torque_lag"),
     ("--cutoff", "cutoff"),

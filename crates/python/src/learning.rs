@@ -57,9 +57,7 @@ impl Learned {
             other => return Err(unknown("length_scales", other, &["single", "per-input"])),
         };
         if starts == 0 {
-            return Err(JointwiseError::new_err(
-                "starts is 0; the search of the likelihood needs at least 1",
-            ));
+            return Err(JointwiseError::new_err("starts is 0; the search of the likelihood needs at least 1"));
         }
         let arm = dynamics.arm.clone();
         let given = [("q", &q), ("qd", &qd), ("qdd", &qdd), ("tau", &tau)];
@@ -67,19 +65,9 @@ impl Learned {
         let train = || -> Result<torque::Learned, TorqueError> {
             let mut samples = Samples::new(arm.dof());
             for k in 0..q.len() {
-                samples.push(Sample {
-                    q: q.row(k),
-                    qd: qd.row(k),
-                    qdd: qdd.row(k),
-                    tau: tau.row(k),
-                })?;
+                samples.push(Sample { q: q.row(k), qd: qd.row(k), qdd: qdd.row(k), tau: tau.row(k) })?;
             }
-            let options = TrainingOptions {
-                lengths,
-                starts,
-                max_iterations,
-                inducing: None,
-            };
+            let options = TrainingOptions { lengths, starts, max_iterations, inducing: None };
             torque::Learned::on_top_of(&arm, inputs, &samples, &options)
         };
         let model = py.detach(train).map_err(|error| match error {
@@ -105,8 +93,7 @@ impl Learned {
         let scratch = || (Workspace::new(dof), Prediction::new(dof));
         let values = py.detach(|| {
             each_row(q.len(), dof, scratch, |(workspace, prediction), k, tau| {
-                self.model
-                    .predict(workspace, q.row(k), qd.row(k), qdd.row(k), prediction);
+                self.model.predict(workspace, q.row(k), qd.row(k), qdd.row(k), prediction);
                 for (joint, tau) in tau.iter_mut().enumerate() {
                     *tau = prediction.torque(joint);
                 }

@@ -62,8 +62,7 @@ pub fn rows<const N: usize>(arm: &Arm, given: [(&str, &PyReadonlyArray2<'_, f64>
         }
         list.push(rows);
     }
-    list.try_into()
-        .map_err(|_| JointwiseError::new_err("arrays were lost on the way"))
+    list.try_into().map_err(|_| JointwiseError::new_err("arrays were lost on the way"))
 }
 
 /// An array of `count` rows with `width` numbers each; `of` computes a row. A row's numbers do not depend on the other
@@ -75,14 +74,11 @@ pub fn each_row<W: Send>(
     of: impl Fn(&mut W, usize, &mut [f64]) + Sync + Send,
 ) -> Vec<f64> {
     let mut values = vec![0.0; count * width];
-    values
-        .par_chunks_mut(BLOCK * width.max(1))
-        .enumerate()
-        .for_each_init(workspace, |workspace, (block, values)| {
-            for (k, row) in values.chunks_exact_mut(width.max(1)).enumerate() {
-                of(workspace, block * BLOCK + k, row);
-            }
-        });
+    values.par_chunks_mut(BLOCK * width.max(1)).enumerate().for_each_init(workspace, |workspace, (block, values)| {
+        for (k, row) in values.chunks_exact_mut(width.max(1)).enumerate() {
+            of(workspace, block * BLOCK + k, row);
+        }
+    });
     values
 }
 

@@ -9,16 +9,10 @@ fn main() {
 const ROWS: usize = 100_000;
 
 fn recording() -> Recording {
-    let time: Vec<f64> = (0..ROWS)
-        .map(|k| k as f64 * 1e-3 + 1e-4 * (k as f64 * 1.7).sin())
-        .collect();
+    let time: Vec<f64> = (0..ROWS).map(|k| k as f64 * 1e-3 + 1e-4 * (k as f64 * 1.7).sin()).collect();
     let signal = |scale: f64| -> Signal {
         (0..7)
-            .map(|joint| {
-                (0..ROWS)
-                    .map(|k| scale * (k as f64 * 1e-3 * (1.0 + f64::from(joint))).sin())
-                    .collect()
-            })
+            .map(|joint| (0..ROWS).map(|k| scale * (k as f64 * 1e-3 * (1.0 + f64::from(joint))).sin()).collect())
             .collect()
     };
     Recording {

@@ -24,15 +24,9 @@ impl Array {
         let (samples, series) = if transposed { (columns, rows) } else { (rows, columns) };
         let index = |sample: usize, series: usize| {
             let (row, column) = if transposed { (series, sample) } else { (sample, series) };
-            if self.by_rows {
-                row * columns + column
-            } else {
-                column * rows + row
-            }
+            if self.by_rows { row * columns + column } else { column * rows + row }
         };
-        (0..series)
-            .map(|series| self.values.picked((0..samples).map(|sample| index(sample, series))))
-            .collect()
+        (0..series).map(|series| self.values.picked((0..samples).map(|sample| index(sample, series)))).collect()
     }
 }
 
@@ -48,11 +42,7 @@ pub fn table(input: &Input, format: &'static str, arrays: &[Array]) -> Result<Ta
         let names: Vec<&str> = arrays.iter().map(|array| array.name.as_str()).collect();
         let reason = format!(
             "no array of numbers is a vector with a value per sample; save t, and q and tau with a column per joint; its arrays are {}",
-            if names.is_empty() {
-                "none".to_owned()
-            } else {
-                names.join(", ")
-            }
+            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
         );
         return Err(input.error(format, reason));
     }
@@ -84,10 +74,7 @@ pub fn table(input: &Input, format: &'static str, arrays: &[Array]) -> Result<Ta
     }
     let mut table = Table::of_columns(columns);
     if !left_out.is_empty() {
-        let what = format!(
-            "left out, because they have not {samples} rows: {}",
-            left_out.join(", ")
-        );
+        let what = format!("left out, because they have not {samples} rows: {}", left_out.join(", "));
         table.warnings.push(Warning::LeftOut { what });
     }
     Ok(table)

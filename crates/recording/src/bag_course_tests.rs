@@ -13,11 +13,7 @@ fn used(times: &[f64]) -> Result<(Vec<u64>, u64), Late> {
     };
     for (number, time) in (1..).zip(times) {
         let values = [None; 3];
-        let sample = Sample {
-            number,
-            time: (time * 1e9).round() as i64,
-            values,
-        };
+        let sample = Sample { number, time: (time * 1e9).round() as i64, values };
         match course.take(sample)? {
             Taken::Used(_) => used.push(sample),
             Taken::HeldBack => {}
@@ -48,10 +44,7 @@ fn every_sample_is_used_or_wrong() {
         ([from(0.0, 30), vec![6.0], from(3.0, 60)].concat(), 1),
         ([from(0.0, 30), vec![500.0, 1e7, 400.0], from(3.0, 30)].concat(), 3),
         ([from(100.0, 30), vec![5.0], from(103.0, 30)].concat(), 1),
-        (
-            [from(100.0, 30), vec![5.0, 4.0, 90.0, 101.0], from(103.0, 30)].concat(),
-            4,
-        ),
+        ([from(100.0, 30), vec![5.0, 4.0, 90.0, 101.0], from(103.0, 30)].concat(), 4),
         // Both, one after the other.
         ([from(100.0, 30), vec![1e6, 5.0], from(103.0, 30)].concat(), 2),
         // A pause is none.
@@ -60,11 +53,7 @@ fn every_sample_is_used_or_wrong() {
     ];
     for (times, expected) in cases {
         let (used, wrong) = used(&times).expect("no clock was set back");
-        assert_eq!(
-            (used.len() + wrong as usize, wrong),
-            (times.len(), expected),
-            "{times:?}"
-        );
+        assert_eq!((used.len() + wrong as usize, wrong), (times.len(), expected), "{times:?}");
     }
 }
 
@@ -104,11 +93,7 @@ fn files(all: &[Vec<f64>]) -> Result<(bool, u64), Late> {
 fn files_that_overlap_are_not_mixed() {
     for start in [0.0, 0.4, 0.5, 1.0] {
         // The second file begins where the first one did: another run.
-        assert_eq!(
-            files(&[from(0.5, 2000), from(start, 2000)]).ok(),
-            Some((true, 0)),
-            "{start}"
-        );
+        assert_eq!(files(&[from(0.5, 2000), from(start, 2000)]).ok(), Some((true, 0)), "{start}");
     }
     assert!(files(&[from(0.0, 2000), from(50.0, 2000)]).is_err());
     assert_eq!(files(&[from(200.0, 2000), from(0.0, 2000)]).ok(), Some((false, 0)));

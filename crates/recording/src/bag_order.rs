@@ -42,11 +42,7 @@ struct Counted {
 impl Order {
     /// Counts a late message of `topic`.
     pub fn count(&mut self, Late { number, late, .. }: Late, topic: &str) {
-        let counted = self.late.entry(topic.to_owned()).or_insert(Counted {
-            messages: 0,
-            first: number,
-            largest: 0,
-        });
+        let counted = self.late.entry(topic.to_owned()).or_insert(Counted { messages: 0, first: number, largest: 0 });
         counted.messages += 1;
         counted.largest = late.max(counted.largest);
     }

@@ -32,15 +32,7 @@ pub struct BagWindows {
 impl BagWindows {
     /// Windows of `seconds` (s) in all.
     pub fn new(seconds: f64) -> Self {
-        Self {
-            most: seconds as u64,
-            level: 0,
-            origin: None,
-            seen: BTreeMap::new(),
-            last: None,
-            all: 0,
-            held: 0,
-        }
+        Self { most: seconds as u64, level: 0, origin: None, seen: BTreeMap::new(), last: None, all: 0, held: 0 }
     }
 
     /// Counts a message at `time` (ns); whether it is kept. If windows are given up, `give_up` is called: messages that
@@ -78,10 +70,7 @@ impl BagWindows {
 
     fn thin(&mut self) {
         self.level += 1;
-        let taken = self
-            .seen
-            .iter()
-            .filter(|(number, _)| is_taken(**number as f64, self.level));
+        let taken = self.seen.iter().filter(|(number, _)| is_taken(**number as f64, self.level));
         self.held = taken.map(|(_, seconds)| u64::from(seconds.count_ones())).sum();
     }
 
@@ -132,13 +121,8 @@ mod tests {
         let all = 100_000;
         let in_order = kept((0..all).map(time));
         // Neighbours exchanged, and the first half after the second one (whose first message remains the first).
-        let exchanged = (0..all).map(|message| {
-            time(if message > 0 && message + 1 < all {
-                ((message - 1) ^ 1) + 1
-            } else {
-                message
-            })
-        });
+        let exchanged = (0..all)
+            .map(|message| time(if message > 0 && message + 1 < all { ((message - 1) ^ 1) + 1 } else { message }));
         let (first, second) = (1..all / 2, all / 2..all);
         let halves = std::iter::once(0).chain(second).chain(first).map(time);
         assert_eq!(kept(exchanged), in_order);
@@ -158,11 +142,7 @@ mod tests {
     fn messages_before_the_first_are_thinned_too() {
         let back = (0..100_000).map(|message| -f64::from(message) * 0.01);
         let (kept, left_out) = kept(back);
-        assert!(
-            (4500..12_500).contains(&kept.len()) && left_out > 800.0,
-            "{}",
-            kept.len()
-        );
+        assert!((4500..12_500).contains(&kept.len()) && left_out > 800.0, "{}", kept.len());
     }
 
     /// Once a second, and with a pause.

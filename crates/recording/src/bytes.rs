@@ -13,11 +13,7 @@ pub struct Bytes<'a> {
 impl<'a> Bytes<'a> {
     /// A reader at the beginning of `data`.
     pub fn new(data: &'a [u8], big_endian: bool) -> Self {
-        Self {
-            data,
-            at: 0,
-            big_endian,
-        }
+        Self { data, at: 0, big_endian }
     }
 
     /// The number of remaining bytes.

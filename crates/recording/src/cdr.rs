@@ -33,9 +33,7 @@ pub fn decode(data: &[u8]) -> Result<JointState<'_>, String> {
     for (field, values) in FIELDS.iter().zip(&message.fields) {
         if !values.is_empty() && values.len() != names {
             let count = values.len();
-            return Err(format!(
-                "it has {names} names and {count} values of {field}; publish one of each joint"
-            ));
+            return Err(format!("it has {names} names and {count} values of {field}; publish one of each joint"));
         }
     }
     Ok(message)
@@ -67,11 +65,7 @@ fn decode_body(mut body: Bytes<'_>) -> Option<JointState<'_>> {
             values.push(body.f64()?);
         }
     }
-    Some(JointState {
-        stamp: i64::from(seconds) * NANOS + i64::from(nanos),
-        names,
-        fields,
-    })
+    Some(JointState { stamp: i64::from(seconds) * NANOS + i64::from(nanos), names, fields })
 }
 
 #[cfg(test)]
@@ -82,18 +76,10 @@ mod tests {
     fn message(big_endian: bool) -> Vec<u8> {
         let mut data = vec![0, u8::from(!big_endian), 0, 0];
         let word = |value: u32| {
-            if big_endian {
-                value.to_be_bytes()
-            } else {
-                value.to_le_bytes()
-            }
+            if big_endian { value.to_be_bytes() } else { value.to_le_bytes() }
         };
         let number = |value: f64| {
-            if big_endian {
-                value.to_be_bytes()
-            } else {
-                value.to_le_bytes()
-            }
+            if big_endian { value.to_be_bytes() } else { value.to_le_bytes() }
         };
         let pad = |data: &mut Vec<u8>, size: usize| {
             while !(data.len() - 4).is_multiple_of(size) {

@@ -60,11 +60,7 @@ pub fn find(time: &[f64], breaks: &[usize]) -> Clock {
     let period = estimate_period(time, breaks);
     let near = scatter(time, breaks, period, 1);
     // With such a large scatter, an attempt by phase would fail and take twice the time.
-    let wide = if near > BLURRED {
-        track::by_order(time, breaks, period)
-    } else {
-        None
-    };
+    let wide = if near > BLURRED { track::by_order(time, breaks, period) } else { None };
     wide.unwrap_or_else(|| {
         let clock = by_phase(time, breaks, period, near);
         if near > BLURRED || clock.regular && clock.jitter.0 < WIDE * clock.period {
@@ -94,11 +90,7 @@ fn by_phase(time: &[f64], breaks: &[usize], period: f64, near: f64) -> Clock {
         // Two rows cannot share a tick.
         clock.regular &= ticks.windows(2).all(|pair| pair[0] < pair[1]);
         clock.ticks.extend(ticks.iter().map(|tick| tick - first));
-        clock.pieces.push(Piece {
-            rows: rows.clone(),
-            start: 0.0,
-            shift: 0.0,
-        });
+        clock.pieces.push(Piece { rows: rows.clone(), start: 0.0, shift: 0.0 });
         measure_jitter(&mut clock, stamps, &phases, first, rows.start);
     }
     let rows = time.len() as f64;
@@ -146,11 +138,7 @@ fn estimate_period(time: &[f64], breaks: &[usize]) -> f64 {
         kept.iter().sum::<f64>() / kept.len().max(1) as f64
     };
     // The mean near the median if stamps are rounded, the overall mean if rows come in bursts.
-    let candidates = [
-        mean(&|step| step > 0.4 * middle && step < 1.6 * middle),
-        middle,
-        mean(&|_| true),
-    ];
+    let candidates = [mean(&|step| step > 0.4 * middle && step < 1.6 * middle), middle, mean(&|_| true)];
     let mut best = (f64::INFINITY, candidates[0]);
     for candidate in candidates {
         let period = refine(time, breaks, candidate);
@@ -192,9 +180,8 @@ fn refine(time: &[f64], breaks: &[usize], mut period: f64) -> f64 {
 
 /// The distance of differences over `lag` rows from whole periods, as a share of the period; a robust estimate.
 fn scatter(time: &[f64], breaks: &[usize], period: f64, lag: usize) -> f64 {
-    let mut off: Vec<f64> = differences(time, breaks, lag)
-        .map(|difference| fraction(difference / period).abs())
-        .collect();
+    let mut off: Vec<f64> =
+        differences(time, breaks, lag).map(|difference| fraction(difference / period).abs()).collect();
     if off.is_empty() { 0.0 } else { 1.4826 * median(&mut off) }
 }
 
@@ -226,11 +213,7 @@ fn phases(stamps: &[f64], period: f64) -> Vec<(f64, f64)> {
     let mut phases: Vec<(f64, f64)> = Vec::new();
     let blocks = (stamps.len() / BLOCK).max(1);
     for block in 0..blocks {
-        let rows = block * BLOCK..if block + 1 == blocks {
-            stamps.len()
-        } else {
-            (block + 1) * BLOCK
-        };
+        let rows = block * BLOCK..if block + 1 == blocks { stamps.len() } else { (block + 1) * BLOCK };
         let stamps = &stamps[rows.clone()];
         let origin = phases.last().map_or(stamps[0], |phase| phase.1);
         // The circular mean finds the phase wherever it is; the median then forgives late rows.
@@ -241,10 +224,7 @@ fn phases(stamps: &[f64], period: f64) -> Vec<(f64, f64)> {
             cosine += c;
         }
         let mean = sine.atan2(cosine) / std::f64::consts::TAU;
-        let mut off: Vec<f64> = stamps
-            .iter()
-            .map(|stamp| fraction((stamp - origin) / period - mean))
-            .collect();
+        let mut off: Vec<f64> = stamps.iter().map(|stamp| fraction((stamp - origin) / period - mean)).collect();
         let phase = origin + period * (mean + median(&mut off));
         phases.push(((rows.start + rows.end) as f64 / 2.0, phase));
     }
@@ -270,15 +250,11 @@ fn phase_at(phases: &[(f64, f64)], row: usize, block: &mut usize) -> f64 {
 /// The tick of each row.
 fn assign(stamps: &[f64], phases: &[(f64, f64)], period: f64) -> Vec<i64> {
     let mut block = 0;
-    let exact: Vec<f64> = (0..stamps.len())
-        .map(|row| (stamps[row] - phase_at(phases, row, &mut block)) / period)
-        .collect();
+    let exact: Vec<f64> =
+        (0..stamps.len()).map(|row| (stamps[row] - phase_at(phases, row, &mut block)) / period).collect();
     let nearest: Vec<i64> = exact.iter().map(|at| at.round() as i64).collect();
     let sure = nearest.windows(2).all(|pair| pair[1] > pair[0])
-        && exact
-            .iter()
-            .zip(&nearest)
-            .all(|(at, tick)| (at - *tick as f64).abs() < SURE);
+        && exact.iter().zip(&nearest).all(|(at, tick)| (at - *tick as f64).abs() < SURE);
     if sure { nearest } else { likeliest(&exact, &nearest) }
 }
 
@@ -289,20 +265,12 @@ const EARLIEST: i64 = -3;
 /// The strictly increasing ticks with the lowest cost, which depends on scatter, asymmetrically for late rows, and on
 /// lost ticks.
 fn likeliest(exact: &[f64], nearest: &[i64]) -> Vec<i64> {
-    let mut off: Vec<f64> = exact
-        .iter()
-        .zip(nearest)
-        .map(|(at, tick)| (at - *tick as f64).abs())
-        .collect();
+    let mut off: Vec<f64> = exact.iter().zip(nearest).map(|(at, tick)| (at - *tick as f64).abs()).collect();
     let scale = (1.4826 * median(&mut off)).max(0.02);
     let tick = |row: usize, candidate: usize| nearest[row] + EARLIEST + candidate as i64;
     let own = |row: usize, candidate: usize| {
         let away = ((exact[row] - tick(row, candidate) as f64) / scale).abs();
-        if away < 2.0 {
-            away * away / 2.0
-        } else {
-            2.0 * away - 2.0
-        }
+        if away < 2.0 { away * away / 2.0 } else { 2.0 * away - 2.0 }
     };
     let mut cost: [f64; CANDIDATES] = std::array::from_fn(|candidate| own(0, candidate));
     let mut from: Vec<[u8; CANDIDATES]> = vec![[0; CANDIDATES]; exact.len()];
@@ -325,10 +293,8 @@ fn likeliest(exact: &[f64], nearest: &[i64]) -> Vec<i64> {
         }
         cost = next;
     }
-    let mut best = (0..CANDIDATES).fold(
-        0,
-        |best, candidate| if cost[candidate] < cost[best] { candidate } else { best },
-    );
+    let mut best =
+        (0..CANDIDATES).fold(0, |best, candidate| if cost[candidate] < cost[best] { candidate } else { best });
     if !cost[best].is_finite() {
         // If there are more rows than ticks, there is no clock.
         return nearest.to_vec();
@@ -374,11 +340,7 @@ fn fit(clock: &mut Clock, time: &[f64]) {
         let period = numerator / denominator;
         let rate = (1.0 / period).round();
         let doubt = 3.0 * clock.jitter.0 / denominator.sqrt() + 1e-9 * period;
-        clock.period = if rate >= 1.0 && (1.0 / rate - period).abs() < doubt {
-            1.0 / rate
-        } else {
-            period
-        };
+        clock.period = if rate >= 1.0 && (1.0 / rate - period).abs() < doubt { 1.0 / rate } else { period };
     }
     let period = clock.period;
     let certain = 0.02 + 6.0 * clock.jitter.0 / period;

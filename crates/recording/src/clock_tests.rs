@@ -21,21 +21,14 @@ impl Random {
 
 /// Ticks of which a share is lost.
 fn ticks(random: &mut Random, count: i64, lost: f64) -> Vec<i64> {
-    (0..count)
-        .filter(|&tick| tick == 0 || random.uniform() > lost)
-        .collect()
+    (0..count).filter(|&tick| tick == 0 || random.uniform() > lost).collect()
 }
 
 fn checked(truth: &[i64], stamps: &[f64], period: f64) -> Clock {
     let clock = find(stamps, &[]);
     assert!(clock.regular);
     let off = (clock.period / period - 1.0).abs();
-    let wrong = clock
-        .ticks
-        .iter()
-        .zip(truth)
-        .filter(|(found, truth)| *found != *truth)
-        .count();
+    let wrong = clock.ticks.iter().zip(truth).filter(|(found, truth)| *found != *truth).count();
     assert_eq!(wrong, 0, "of {} rows; the period is off by {off:e}", truth.len());
     assert!(off < 1e-4, "the period is off by {off:e}");
     clock
@@ -63,10 +56,7 @@ fn jittered_stamps_with_lost_rows_land_on_their_ticks() {
 fn an_exact_clock_is_found_exactly() {
     for rate in [100.0, 250.0, 1000.0, 5000.0] {
         let truth: Vec<i64> = (0..5000).collect();
-        let stamps: Vec<f64> = truth
-            .iter()
-            .map(|tick| (*tick as f64 / rate * 1e6).round() / 1e6)
-            .collect();
+        let stamps: Vec<f64> = truth.iter().map(|tick| (*tick as f64 / rate * 1e6).round() / 1e6).collect();
         let clock = checked(&truth, &stamps, 1.0 / rate);
         assert_eq!(clock.period, 1.0 / rate);
         assert!(clock.pieces.len() == 1 && clock.pieces[0].start.abs() < 1e-9);
@@ -146,10 +136,7 @@ fn stamps_without_a_clock_are_reported() {
 fn a_clock_of_which_a_third_is_lost_is_found() {
     let mut random = Random(11);
     let truth = ticks(&mut random, 5000, 0.33);
-    let stamps: Vec<f64> = truth
-        .iter()
-        .map(|tick| 0.01 * *tick as f64 + 1e-3 * random.normal())
-        .collect();
+    let stamps: Vec<f64> = truth.iter().map(|tick| 0.01 * *tick as f64 + 1e-3 * random.normal()).collect();
     let clock = find(&stamps, &[]);
     assert!(clock.regular && (clock.period - 0.01).abs() < 1e-6);
     // Long gaps part the pieces, and ticks count from each piece's first row.
@@ -217,9 +204,8 @@ fn stamps_that_scatter_over_almost_a_period_do_not_bend_the_clock() {
 #[test]
 fn coarse_stamps_have_a_clock() {
     let scatter = |row: usize| 0.3e-3 * (1.7 * row as f64).sin() * (0.3 * row as f64 * row as f64).cos();
-    let mut time: Vec<f64> = (0..5000)
-        .map(|row| ((1e-3 * row as f64 + 0.25e-3 + scatter(row)) * 1e3).round() / 1e3)
-        .collect();
+    let mut time: Vec<f64> =
+        (0..5000).map(|row| ((1e-3 * row as f64 + 0.25e-3 + scatter(row)) * 1e3).round() / 1e3).collect();
     for row in 1..time.len() {
         time[row] = time[row].max(time[row - 1].next_up());
     }

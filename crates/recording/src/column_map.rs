@@ -97,11 +97,7 @@ impl Source<'_> {
     }
 
     fn error(&self, span: Range<usize>, reason: impl Into<String>) -> RecordingError {
-        RecordingError::Map {
-            path: self.path.to_owned(),
-            line: self.line(span),
-            reason: reason.into(),
-        }
+        RecordingError::Map { path: self.path.to_owned(), line: self.line(span), reason: reason.into() }
     }
 }
 
@@ -111,10 +107,8 @@ impl ColumnMap {
     /// # Errors
     /// [`RecordingError::Read`], or [`RecordingError::Map`] with the line.
     pub fn load(path: &Path) -> Result<Self, RecordingError> {
-        let text = std::fs::read_to_string(path).map_err(|reason| RecordingError::Read {
-            path: path.to_owned(),
-            reason,
-        })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|reason| RecordingError::Read { path: path.to_owned(), reason })?;
         Self::parse(&text, path)
     }
 
@@ -151,11 +145,8 @@ impl ColumnMap {
         }
         template::check(&source, &joints, &entries)?;
         for (quantity, key) in [(Quantity::Velocity, "qd"), (Quantity::Acceleration, "qdd")] {
-            let has = |joint: usize| {
-                entries
-                    .iter()
-                    .any(|entry: &Entry| entry.joint == joint && entry.quantity == quantity)
-            };
+            let has =
+                |joint: usize| entries.iter().any(|entry: &Entry| entry.joint == joint && entry.quantity == quantity);
             let count = (0..joints.len()).filter(|&joint| has(joint)).count();
             if count > 0 && count < joints.len() {
                 let missing = (0..joints.len()).find(|&joint| !has(joint)).unwrap_or(0);
@@ -195,10 +186,7 @@ impl ColumnMap {
 
     /// This map for these topics only.
     pub(crate) fn with_topics(&self, topics: &[String]) -> Self {
-        Self {
-            topics: topics.to_vec(),
-            ..self.clone()
-        }
+        Self { topics: topics.to_vec(), ..self.clone() }
     }
 
     /// The column that numbers the runs. A file of a known system may lack it, if it holds one run.
@@ -250,18 +238,13 @@ impl ColumnMap {
             });
         }
         let mut plan = Plan::new(headers, expanded.joints, time, channels);
-        plan.others
-            .retain(|(index, _)| !expanded.names.iter().any(|(name, _)| name == index));
+        plan.others.retain(|(index, _)| !expanded.names.iter().any(|(name, _)| name == index));
         plan.names = expanded.names;
         Ok(plan)
     }
 
     fn refuse(&self, line: usize, reason: String) -> RecordingError {
-        RecordingError::Map {
-            path: self.path.clone(),
-            line,
-            reason,
-        }
+        RecordingError::Map { path: self.path.clone(), line, reason }
     }
 }
 
@@ -272,10 +255,9 @@ fn time_columns(source: &Source<'_>, raw: &RawTime) -> Result<Time, RecordingErr
         Some(unit) => units::time(unit.get_ref()).map_err(|known| unknown_unit(source, unit, &known))?,
     };
     if let (Some(unit), Some(_)) = (&raw.unit, &raw.nanosec) {
-        return Err(source.error(
-            unit.span(),
-            "the stamps are whole seconds and nanoseconds; take `unit` or `nanosec` out",
-        ));
+        return Err(
+            source.error(unit.span(), "the stamps are whole seconds and nanoseconds; take `unit` or `nanosec` out")
+        );
     }
     Ok(Time {
         column: placed(&raw.column),

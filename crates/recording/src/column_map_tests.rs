@@ -32,9 +32,7 @@ fn refusal(from: &str, to: &str) -> String {
 fn units_signs_gears_and_order_come_out() {
     let map = parse(GOOD).expect("it is good");
     assert_eq!(map.joints, ["shoulder", "base"]);
-    let headers: Vec<String> = ["stamp", "pos_0", "pos_1", "current_1", "tau_0", "mode"]
-        .map(str::to_owned)
-        .to_vec();
+    let headers: Vec<String> = ["stamp", "pos_0", "pos_1", "current_1", "tau_0", "mode"].map(str::to_owned).to_vec();
     let plan = map.plan(&headers, &[], Path::new("r.csv")).expect("it fits");
     assert_eq!((plan.time.index, plan.time.factor), (0, 1e-3));
     let factors: Vec<f64> = plan.channels.iter().map(|channel| channel.factor).collect();
@@ -43,14 +41,8 @@ fn units_signs_gears_and_order_come_out() {
         assert!((factor - expected).abs() < 1e-12, "{factor} {expected}");
     }
     assert_eq!(plan.others, [(5, "mode".to_owned())]);
-    let missing = map
-        .plan(&headers[..4], &[], Path::new("r.csv"))
-        .expect_err("a column is missing")
-        .to_string();
-    assert!(
-        missing.contains("map.toml:15") && missing.contains("r.csv has no column \"tau_0\""),
-        "{missing}"
-    );
+    let missing = map.plan(&headers[..4], &[], Path::new("r.csv")).expect_err("a column is missing").to_string();
+    assert!(missing.contains("map.toml:15") && missing.contains("r.csv has no column \"tau_0\""), "{missing}");
 }
 
 #[test]
@@ -81,23 +73,15 @@ fn a_column_is_one_thing() {
         format!("[time]\ncolumn = \"t\"\n[joints.a]\nq = \"x\"\ntau = \"{a}\"\n[joints.b]\nq = \"{b}\"\ntau = \"w\"\n")
     };
     assert!(parse(&map("y", "z")).is_ok());
-    for (text, line, other) in [
-        (map("y", "x"), 7, 4),
-        (map("x", "z"), 5, 4),
-        (map("y", "t"), 7, 2),
-        (map("w", "z"), 8, 5),
-    ] {
+    for (text, line, other) in
+        [(map("y", "x"), 7, 4), (map("x", "z"), 5, 4), (map("y", "t"), 7, 2), (map("w", "z"), 8, 5)]
+    {
         let found = parse(&text).expect_err("it is refused");
         let said = format!("m.toml:{line}: column");
-        assert!(
-            found.starts_with(&said) && found.contains(&format!("taken in line {other} already")),
-            "{found}"
-        );
+        assert!(found.starts_with(&said) && found.contains(&format!("taken in line {other} already")), "{found}");
     }
-    let current = map("y", "z").replace(
-        "tau = \"y\"",
-        "tau = \"y\"\ntau_unit = \"A\"\ntau_scale = 2.0\ncurrent = \"y\"",
-    );
+    let current =
+        map("y", "z").replace("tau = \"y\"", "tau = \"y\"\ntau_unit = \"A\"\ntau_scale = 2.0\ncurrent = \"y\"");
     assert!(parse(&current).is_ok());
 }
 
@@ -108,35 +92,18 @@ fn one_joint_stands_for_all_of_a_pattern() {
                qd = \"{joint}.vel\"\ntau = \"{joint}.eff\"\nsign = -1\n";
     let map = parse(map).expect("it is good");
     let file = Path::new("r.csv");
-    let plan = map
-        .plan(&headers("s ns take b.pos b.vel b.eff a.pos a.eff hand.pos"), &[], file)
-        .expect("it fits");
+    let plan = map.plan(&headers("s ns take b.pos b.vel b.eff a.pos a.eff hand.pos"), &[], file).expect("it fits");
     assert_eq!(plan.joints, ["b", "a"]);
-    assert_eq!(
-        (plan.time.nanos, plan.time.run),
-        (Some((1, "ns".into())), Some((2, "take".into())))
-    );
+    assert_eq!((plan.time.nanos, plan.time.run), (Some((1, "ns".into())), Some((2, "take".into()))));
     // Only one of them has a velocity.
-    assert!(
-        plan.channels
-            .iter()
-            .all(|channel| channel.quantity != Quantity::Velocity && channel.factor == -1.0)
-    );
+    assert!(plan.channels.iter().all(|channel| channel.quantity != Quantity::Velocity && channel.factor == -1.0));
     assert_eq!(plan.others.len(), 2);
-    let error = map
-        .plan(&headers("s ns take b.pos"), &[], file)
-        .expect_err("no torque")
-        .to_string();
+    let error = map.plan(&headers("s ns take b.pos"), &[], file).expect_err("no torque").to_string();
     assert!(error.contains("no column \"{joint}.eff\""), "{error}");
     let two = "[time]\ncolumn = \"t\"\n[joints.\"{joint}\"]\nq = \"{joint}.pos\"\ntau = \"eff\"\n";
     let error = parse(two).expect_err("one column for all").to_string();
-    assert!(
-        error.contains("map.toml:5: column \"eff\" would be that of every joint"),
-        "{error}"
-    );
-    let error = parse(&format!("{two}[joints.b]\nq = \"q\"\ntau = \"w\"\n"))
-        .expect_err("two")
-        .to_string();
+    assert!(error.contains("map.toml:5: column \"eff\" would be that of every joint"), "{error}");
+    let error = parse(&format!("{two}[joints.b]\nq = \"q\"\ntau = \"w\"\n")).expect_err("two").to_string();
     assert!(error.contains("it must be the only one"), "{error}");
     let error = parse("delimiter = \";\"\n").expect_err("no joints").to_string();
     assert!(error.contains("there are no joints"), "{error}");

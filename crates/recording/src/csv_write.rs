@@ -36,11 +36,7 @@ impl Recording {
                 }
             }
         }
-        columns.extend(
-            self.others
-                .iter()
-                .map(|(name, values)| (name.clone(), values.as_slice())),
-        );
+        columns.extend(self.others.iter().map(|(name, values)| (name.clone(), values.as_slice())));
         write_whole(path, |file| write_columns(file, &columns))
     }
 }

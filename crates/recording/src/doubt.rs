@@ -11,10 +11,7 @@ use crate::table::{Cell, Row};
 pub type Doubt = (&'static str, &'static str);
 
 /// A value that nothing measures.
-pub const FAR: Doubt = (
-    "far beyond what is measured",
-    "check its unit, or delete the row: gaps are dealt with",
-);
+pub const FAR: Doubt = ("far beyond what is measured", "check its unit, or delete the row: gaps are dealt with");
 
 /// Why a cell is no number that can be used.
 pub fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
@@ -55,9 +52,5 @@ pub fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> R
 
 /// A number without hundreds of zeros.
 pub fn short(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-9 {
-        format!("{value:e}")
-    } else {
-        value.to_string()
-    }
+    if value != 0.0 && value.abs() < 1e-9 { format!("{value:e}") } else { value.to_string() }
 }

@@ -22,11 +22,7 @@ pub fn map(headers: &[String]) -> String {
 
 /// The list of columns, and the proposal.
 pub fn of(headers: &[String]) -> String {
-    let mut listed: Vec<String> = headers
-        .iter()
-        .take(LISTED)
-        .map(|header| format!("\"{header}\""))
-        .collect();
+    let mut listed: Vec<String> = headers.iter().take(LISTED).map(|header| format!("\"{header}\"")).collect();
     if headers.len() > LISTED {
         listed.push(format!("and {} more", headers.len() - LISTED));
     }
@@ -43,21 +39,13 @@ struct Pattern {
 fn draft(headers: &[String]) -> Option<String> {
     let patterns = patterns(headers);
     let time = ["time", "t", "timestamp", "stamp", "sec", "seconds"];
-    let time = time.iter().find_map(|word| {
-        headers
-            .iter()
-            .find(|header| words(header).iter().any(|part| part == word))
-    })?;
-    let unit = ["ms", "us", "ns"]
-        .into_iter()
-        .find(|unit| words(time).iter().any(|word| word == unit));
+    let time =
+        time.iter().find_map(|word| headers.iter().find(|header| words(header).iter().any(|part| part == word)))?;
+    let unit = ["ms", "us", "ns"].into_iter().find(|unit| words(time).iter().any(|word| word == unit));
     let of = |kinds: &[&str], joints: Option<&[String]>| {
         kinds.iter().find_map(|kind| {
             let mut found = patterns.iter().filter(|pattern| {
-                pattern
-                    .words
-                    .iter()
-                    .any(|word| word == kind || word.strip_suffix('s') == Some(*kind))
+                pattern.words.iter().any(|word| word == kind || word.strip_suffix('s') == Some(*kind))
                     && !pattern.words.iter().any(|word| WANTED.contains(&word.as_str()))
                     && joints.is_none_or(|joints| pattern.joints == joints)
             });
@@ -103,10 +91,8 @@ fn patterns(headers: &[String]) -> Vec<Pattern> {
         if let Some(end) = header.rfind(is_digit) {
             let start = header[..=end].rfind(|letter: char| !is_digit(letter));
             let start = start.map_or(0, |at| at + header[at..].chars().next().map_or(1, char::len_utf8));
-            parts.push((
-                format!("{}{{joint}}{}", &header[..start], &header[end + 1..]),
-                header[start..=end].to_owned(),
-            ));
+            parts
+                .push((format!("{}{{joint}}{}", &header[..start], &header[end + 1..]), header[start..=end].to_owned()));
         }
         let lower = header.to_lowercase();
         if lower.len() == header.len() {
@@ -117,10 +103,7 @@ fn patterns(headers: &[String]) -> Vec<Pattern> {
                         parts.push((format!("{}{{joint}}", &header[..cut]), header[cut..].to_owned()));
                     }
                     if let Some(joint) = lower.strip_suffix(&format!("{between}{kind}")) {
-                        parts.push((
-                            format!("{{joint}}{}", &header[joint.len()..]),
-                            header[..joint.len()].to_owned(),
-                        ));
+                        parts.push((format!("{{joint}}{}", &header[joint.len()..]), header[..joint.len()].to_owned()));
                     }
                 }
             }
@@ -128,11 +111,9 @@ fn patterns(headers: &[String]) -> Vec<Pattern> {
         for (text, joint) in parts.into_iter().filter(|(_, joint)| !joint.is_empty()) {
             match patterns.iter_mut().find(|pattern| pattern.text == text) {
                 Some(pattern) => pattern.joints.push(joint),
-                None => patterns.push(Pattern {
-                    words: words(&text.replace("{joint}", "")),
-                    joints: vec![joint],
-                    text,
-                }),
+                None => {
+                    patterns.push(Pattern { words: words(&text.replace("{joint}", "")), joints: vec![joint], text })
+                }
             }
         }
     }
@@ -151,9 +132,7 @@ mod tests {
         let map = draft(&headers)?;
         // The proposal is a valid column map.
         let parsed = ColumnMap::parse(&map, Path::new("map.toml")).unwrap_or_else(|error| panic!("{error}: {map}"));
-        parsed
-            .plan(&headers, &[], Path::new("r"))
-            .unwrap_or_else(|error| panic!("{error}: {map}"));
+        parsed.plan(&headers, &[], Path::new("r")).unwrap_or_else(|error| panic!("{error}: {map}"));
         Some(map)
     }
 
@@ -175,10 +154,7 @@ mod tests {
              tau = \"{joint}_torque\"\n"
         );
         let currents = drafted("timestamp,target_q_0,actual_q_0,actual_current_0").expect("a map");
-        assert!(
-            currents.contains("q = \"actual_q_{joint}\"") && currents.contains("tau_unit = \"A\""),
-            "{currents}"
-        );
+        assert!(currents.contains("q = \"actual_q_{joint}\"") && currents.contains("tau_unit = \"A\""), "{currents}");
         for names in ["a,b", "time,position_a", "position_a,torque_a", "time,pos_a,torque_b"] {
             assert_eq!(drafted(names), None, "{names}");
         }

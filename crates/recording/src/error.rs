@@ -131,10 +131,7 @@ mod tests {
     #[test]
     fn a_full_disk_is_no_matter_of_permission() {
         let failed = |kind: std::io::ErrorKind| {
-            let error = RecordingError::Write {
-                path: "a.csv".into(),
-                reason: kind.into(),
-            };
+            let error = RecordingError::Write { path: "a.csv".into(), reason: kind.into() };
             error.to_string()
         };
         assert!(failed(std::io::ErrorKind::StorageFull).contains("the disk is full: free some space"));

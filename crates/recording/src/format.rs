@@ -135,11 +135,7 @@ impl Recording {
     ) -> Result<Self, RecordingError> {
         let topics = map.map_or(&[] as &[String], ColumnMap::topics);
         let has_lines = table.has_lines;
-        let header_error = |reason: String| RecordingError::Header {
-            path: path.to_owned(),
-            has_lines,
-            reason,
-        };
+        let header_error = |reason: String| RecordingError::Header { path: path.to_owned(), has_lines, reason };
         let mut warnings = std::mem::take(&mut table.warnings);
         let plan = match map.filter(|map| map.has_joints()) {
             Some(map) => map.plan(&table.headers, &table.first, path)?,

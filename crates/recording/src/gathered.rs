@@ -67,11 +67,7 @@ impl Gathered<'_> {
         };
         let mut partial = |quantity: Quantity| -> PartialSignal {
             let signal = signal(quantity);
-            if signal.iter().all(Option::is_none) {
-                Vec::new()
-            } else {
-                signal
-            }
+            if signal.iter().all(Option::is_none) { Vec::new() } else { signal }
         };
         // Given for all joints or for none.
         let mut whole = |quantity: Quantity| -> Signal {

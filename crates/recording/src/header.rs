@@ -37,13 +37,7 @@ pub struct TimeColumn {
 impl TimeColumn {
     /// A column of stamps in s.
     pub fn plain(index: usize, headers: &[String]) -> Self {
-        Self {
-            index,
-            header: headers[index].clone(),
-            factor: 1.0,
-            nanos: None,
-            run: None,
-        }
+        Self { index, header: headers[index].clone(), factor: 1.0, nanos: None, run: None }
     }
 
     /// The indices of these columns.
@@ -71,21 +65,12 @@ pub struct Plan {
 impl Plan {
     /// Makes all unused columns the other columns of the plan.
     pub fn new(headers: &[String], joints: Vec<String>, time: TimeColumn, channels: Vec<Channel>) -> Self {
-        let used: Vec<usize> = time
-            .indices()
-            .chain(channels.iter().map(|channel| channel.index))
-            .collect();
+        let used: Vec<usize> = time.indices().chain(channels.iter().map(|channel| channel.index)).collect();
         let others = (0..headers.len())
             .filter(|index| !used.contains(index))
             .map(|index| (index, headers[index].clone()))
             .collect();
-        Self {
-            joints,
-            time,
-            channels,
-            others,
-            names: Vec::new(),
-        }
+        Self { joints, time, channels, others, names: Vec::new() }
     }
 }
 
@@ -104,21 +89,15 @@ pub fn numbers(headers: &[String]) -> Option<String> {
 
 /// The first used header that occurs twice.
 pub fn doubled<'a>(headers: &'a [String], plan: &Plan) -> Option<&'a str> {
-    let used = plan
-        .time
-        .indices()
-        .chain(plan.channels.iter().map(|channel| channel.index));
-    used.map(|index| headers[index].as_str())
-        .find(|used| headers.iter().filter(|header| header == used).count() > 1)
+    let used = plan.time.indices().chain(plan.channels.iter().map(|channel| channel.index));
+    used.map(|index| headers[index].as_str()).find(|used| headers.iter().filter(|header| header == used).count() > 1)
 }
 
 /// That a column is there twice, before the message that another one is missing.
 pub fn twice(headers: &[String]) -> String {
     let is_twice = |header: &&String| !header.is_empty() && headers.iter().filter(|other| other == header).count() > 1;
     let doubled = headers.iter().find(is_twice);
-    doubled.map_or_else(String::new, |header| {
-        format!("column \"{header}\" is there twice (rename one), and ")
-    })
+    doubled.map_or_else(String::new, |header| format!("column \"{header}\" is there twice (rename one), and "))
 }
 
 /// The plan for headers with testbed's own names; the error contains what is missing.
@@ -128,39 +107,22 @@ pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
     let time = match at("t") {
         Some(index) => TimeColumn::plain(index, headers),
         None => seconds_and_nanos(headers).ok_or_else(|| {
-            let is_time = |header: &&String| {
-                ["time", "stamp"]
-                    .iter()
-                    .any(|word| header.to_lowercase().contains(word))
-            };
-            let hint = headers
-                .iter()
-                .find(is_time)
-                .map_or(String::new(), |header| format!("is \"{header}\" meant? "));
+            let is_time = |header: &&String| ["time", "stamp"].iter().any(|word| header.to_lowercase().contains(word));
+            let hint = headers.iter().find(is_time).map_or(String::new(), |header| format!("is \"{header}\" meant? "));
             format!("there is no column \"t\" (time in s); {hint}{remedy}")
         })?,
     };
     let of = |prefix: &'static str| headers.iter().filter_map(move |header| header.strip_prefix(prefix));
-    let joints: Vec<String> = of("q_")
-        .filter(|name| at(&format!("tau_{name}")).is_some())
-        .map(str::to_owned)
-        .collect();
+    let joints: Vec<String> = of("q_").filter(|name| at(&format!("tau_{name}")).is_some()).map(str::to_owned).collect();
     if of("q_").next().is_none() {
-        return Err(format!(
-            "there is no column \"q_<joint>\" (position in rad or m); {remedy}"
-        ));
+        return Err(format!("there is no column \"q_<joint>\" (position in rad or m); {remedy}"));
     }
     if of("tau_").next().is_none() {
-        return Err(format!(
-            "there is no column \"tau_<joint>\" (torque in N m, or force in N); {remedy}"
-        ));
+        return Err(format!("there is no column \"tau_<joint>\" (torque in N m, or force in N); {remedy}"));
     }
     // An additional quantity of a joint with positions: q_secondary_a, q_desired_a, tau_current_a.
     let more = |name: &str| {
-        joints.iter().any(|joint| {
-            name.strip_suffix(joint.as_str())
-                .is_some_and(|word| word.ends_with('_'))
-        })
+        joints.iter().any(|joint| name.strip_suffix(joint.as_str()).is_some_and(|word| word.ends_with('_')))
     };
     for (prefix, partner) in [("q_", "tau_"), ("tau_", "q_")] {
         for name in of(prefix).filter(|name| !more(name)) {
@@ -195,14 +157,7 @@ pub fn plan_by_names(headers: &[String]) -> Result<Plan, String> {
         for (joint, name) in joints.iter().enumerate() {
             let header = format!("{}{name}", quantity.prefix());
             if let Some(index) = at(&header) {
-                channels.push(Channel {
-                    index,
-                    header,
-                    quantity,
-                    joint,
-                    factor: 1.0,
-                    offset: 0.0,
-                });
+                channels.push(Channel { index, header, quantity, joint, factor: 1.0, offset: 0.0 });
             }
         }
         let found = &channels[before..];
@@ -228,10 +183,7 @@ fn seconds_and_nanos(headers: &[String]) -> Option<TimeColumn> {
             let nanos = headers.iter().position(|header| *header == name)?;
             Some((nanos, name))
         })?;
-        Some(TimeColumn {
-            nanos: Some(nanos),
-            ..TimeColumn::plain(index, headers)
-        })
+        Some(TimeColumn { nanos: Some(nanos), ..TimeColumn::plain(index, headers) })
     })
 }
 

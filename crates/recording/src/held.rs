@@ -18,20 +18,12 @@ const SAME_LINE: f64 = 0.01;
 /// torques of the same rows.
 pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
     if let Some((held, samples)) = samples(&runs(recording, true), &is_multiple) {
-        let warning = Warning::Held {
-            rows: recording.len(),
-            samples: samples.len(),
-            held,
-        };
+        let warning = Warning::Held { rows: recording.len(), samples: samples.len(), held };
         return Some((picked(recording, &samples), warning));
     }
     let runs = runs(recording, false);
     let (held, samples) = samples(&runs, &is_equal).filter(|_| !is_one_encoder(recording, &runs))?;
-    let warning = Warning::HeldPositions {
-        rows: recording.len(),
-        samples: samples.len(),
-        held,
-    };
+    let warning = Warning::HeldPositions { rows: recording.len(), samples: samples.len(), held };
     Some((picked(recording, &samples), warning))
 }
 
@@ -61,10 +53,7 @@ fn is_one_encoder(recording: &Recording, runs: &[(usize, usize)]) -> bool {
     }
     let middle = alone.len() / 2;
     let line = *alone.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let lines = alone
-        .iter()
-        .filter(|&&step| (step - line).abs() < SAME_LINE * line)
-        .count();
+    let lines = alone.iter().filter(|&&step| (step - line).abs() < SAME_LINE * line).count();
     lines as f64 >= ALIKE * (runs.len() - 1) as f64
 }
 
@@ -124,16 +113,8 @@ fn picked(recording: &Recording, rows: &[usize]) -> Recording {
         tau_current: some(&recording.tau_current),
         current: some(&recording.current),
         temperature: some(&recording.temperature),
-        others: recording
-            .others
-            .iter()
-            .map(|(name, values)| (name.clone(), pick(values)))
-            .collect(),
-        breaks: recording
-            .breaks
-            .iter()
-            .map(|&at| rows.partition_point(|&row| row < at))
-            .collect(),
+        others: recording.others.iter().map(|(name, values)| (name.clone(), pick(values))).collect(),
+        breaks: recording.breaks.iter().map(|&at| rows.partition_point(|&row| row < at)).collect(),
         warnings: recording.warnings.clone(),
         epoch: recording.epoch,
         left_out: recording.left_out,
@@ -163,11 +144,7 @@ mod tests {
         let (thinned, warning) = without_held(&recording).expect("samples are held");
         assert_eq!(thinned.q[0].len(), 500);
         assert!(thinned.q[0].windows(2).all(|pair| pair[0] != pair[1]));
-        let expected = Warning::Held {
-            rows: recording.len(),
-            samples: 500,
-            held: 4,
-        };
+        let expected = Warning::Held { rows: recording.len(), samples: 500, held: 4 };
         assert_eq!(warning, expected);
         let (regular, warnings) = recording.regular().expect("it has a clock");
         assert!(warnings.contains(&expected), "{warnings:?}");
@@ -180,11 +157,7 @@ mod tests {
         recording.tau = vec![(0..recording.len()).map(|row| (0.01 * row as f64).cos()).collect()];
         let (thinned, warning) = without_held(&recording).expect("positions are held");
         assert_eq!((thinned.len(), thinned.tau[0][100]), (500, recording.tau[0][300]));
-        let expected = Warning::HeldPositions {
-            rows: 1500,
-            samples: 500,
-            held: 3,
-        };
+        let expected = Warning::HeldPositions { rows: 1500, samples: 500, held: 3 };
         assert_eq!(warning, expected);
     }
 
@@ -195,19 +168,11 @@ mod tests {
         recording.tau = vec![(0..recording.len()).map(|row| (0.3 * row as f64).cos()).collect()];
         for quantum in [0.02, 0.04, 0.06] {
             let coarse = recording.q[0].iter().map(|q| (q / quantum).round() * quantum).collect();
-            let recording = Recording {
-                q: vec![coarse],
-                ..recording.clone()
-            };
+            let recording = Recording { q: vec![coarse], ..recording.clone() };
             assert!(without_held(&recording).is_none(), "{quantum}");
         }
-        let at_constant_speed = (0..recording.len())
-            .map(|row| 0.01 * (row as f64 / 7.4).floor())
-            .collect();
-        let recording = Recording {
-            q: vec![at_constant_speed],
-            ..recording
-        };
+        let at_constant_speed = (0..recording.len()).map(|row| 0.01 * (row as f64 / 7.4).floor()).collect();
+        let recording = Recording { q: vec![at_constant_speed], ..recording };
         assert!(without_held(&recording).is_none());
     }
 

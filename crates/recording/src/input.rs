@@ -37,18 +37,10 @@ impl Input {
     /// # Errors
     /// [`RecordingError::Read`], or [`RecordingError::Format`] if the compressed file is not whole or expands too far.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let unreadable = |reason| RecordingError::Read {
-            path: path.to_owned(),
-            reason,
-        };
+        let unreadable = |reason| RecordingError::Read { path: path.to_owned(), reason };
         let mut file = File::open(path).map_err(unreadable)?;
         if file.metadata().map_err(unreadable)?.is_dir() {
-            return Ok(Self {
-                path: path.to_owned(),
-                head: Vec::new(),
-                file: None,
-                unchanged: true,
-            });
+            return Ok(Self { path: path.to_owned(), head: Vec::new(), file: None, unchanged: true });
         }
         let mut unchanged = file.metadata().map_err(unreadable)?.is_file();
         let mut head = read_head(&mut file).map_err(unreadable)?;
@@ -57,12 +49,7 @@ impl Input {
             head = read_head(&mut file).map_err(unreadable)?;
             unchanged = false;
         }
-        Ok(Self {
-            path: path.to_owned(),
-            head,
-            file: Some(file),
-            unchanged,
-        })
+        Ok(Self { path: path.to_owned(), head, file: Some(file), unchanged })
     }
 
     /// Whether it is a folder.
@@ -77,37 +64,24 @@ impl Input {
 
     /// An error that a format's reader has with this file.
     pub fn error(&self, format: &'static str, reason: impl ToString) -> RecordingError {
-        RecordingError::Format {
-            path: self.path.clone(),
-            format,
-            reason: reason.to_string(),
-        }
+        RecordingError::Format { path: self.path.clone(), format, reason: reason.to_string() }
     }
 
     /// The contents from the first byte on, and whether they end with a newline (true for a pipe, where this is not
     /// known).
     pub fn into_stream(self) -> Result<(Box<dyn Read>, bool), RecordingError> {
         let Some(mut file) = self.file else {
-            return Err(RecordingError::Read {
-                path: self.path,
-                reason: std::io::Error::other("it is a folder"),
-            });
+            return Err(RecordingError::Read { path: self.path, reason: std::io::Error::other("it is a folder") });
         };
-        let ends_whole =
-            ends_with_newline(&mut file, self.head.len() as u64).map_err(|reason| RecordingError::Read {
-                path: self.path,
-                reason,
-            })?;
+        let ends_whole = ends_with_newline(&mut file, self.head.len() as u64)
+            .map_err(|reason| RecordingError::Read { path: self.path, reason })?;
         Ok((Box::new(Cursor::new(self.head).chain(file)), ends_whole))
     }
 
     /// The contents as a file that can be read at any place, from its start; a pipe is copied into a temporary file.
     pub fn to_file(&self) -> Result<File, RecordingError> {
         let read = || -> std::io::Result<File> {
-            let file = self
-                .file
-                .as_ref()
-                .ok_or_else(|| std::io::Error::other("it is a folder"))?;
+            let file = self.file.as_ref().ok_or_else(|| std::io::Error::other("it is a folder"))?;
             let mut file = file.try_clone()?;
             if file.metadata()?.is_file() {
                 file.rewind()?;
@@ -119,10 +93,7 @@ impl Input {
             copy.rewind()?;
             Ok(copy)
         };
-        read().map_err(|reason| RecordingError::Read {
-            path: self.path.clone(),
-            reason,
-        })
+        read().map_err(|reason| RecordingError::Read { path: self.path.clone(), reason })
     }
 }
 
@@ -131,10 +102,7 @@ impl Input {
     pub fn to_bytes(&self) -> Result<Vec<u8>, RecordingError> {
         let mut bytes = Vec::new();
         let read = self.to_file()?.read_to_end(&mut bytes);
-        read.map_err(|reason| RecordingError::Read {
-            path: self.path.clone(),
-            reason,
-        })?;
+        read.map_err(|reason| RecordingError::Read { path: self.path.clone(), reason })?;
         Ok(bytes)
     }
 }
@@ -181,21 +149,12 @@ impl<R: Read> Read for Counted<R> {
 
 /// The expanded contents of a compressed file, in a temporary file without a name.
 fn expand(path: &Path, name: &'static str, head: Vec<u8>, rest: File) -> Result<File, RecordingError> {
-    let error = |reason: String| RecordingError::Format {
-        path: path.to_owned(),
-        format: name,
-        reason,
-    };
+    let error = |reason: String| RecordingError::Format { path: path.to_owned(), format: name, reason };
     let broken = |reason: std::io::Error| {
-        error(format!(
-            "the compressed file is damaged or cut ({reason}); copy or compress it again"
-        ))
+        error(format!("the compressed file is damaged or cut ({reason}); copy or compress it again"))
     };
     let count = Rc::new(Cell::new(0));
-    let source = Counted {
-        inner: Cursor::new(head).chain(rest),
-        count: Rc::clone(&count),
-    };
+    let source = Counted { inner: Cursor::new(head).chain(rest), count: Rc::clone(&count) };
     let mut source: Box<dyn Read> = match name {
         "gzip" => Box::new(flate2::read::MultiGzDecoder::new(source)),
         _ => Box::new(zstd::stream::read::Decoder::new(source).map_err(broken)?),

@@ -40,11 +40,7 @@ pub fn between(places: &[f64], values: &[f64], next: usize, side: usize, at: f64
         *node = (places[k], values[k]);
     }
     let (value, weights) = weighted(&nodes[..count], at);
-    if weights <= MOST_WEIGHT {
-        value
-    } else {
-        lagrange(&[next - 1, next].map(|k| (places[k], values[k])), at)
-    }
+    if weights <= MOST_WEIGHT { value } else { lagrange(&[next - 1, next].map(|k| (places[k], values[k])), at) }
 }
 
 #[cfg(test)]

@@ -81,10 +81,7 @@ fn shift(runs: &[Run], run: usize) -> i64 {
 impl JointStates {
     /// An empty collection of messages. Of bags that last longer than `seconds` (s), it keeps windows of that duration together.
     pub fn new(seconds: Option<f64>) -> Self {
-        Self {
-            windows: seconds.map(BagWindows::new),
-            ..Self::default()
-        }
+        Self { windows: seconds.map(BagWindows::new), ..Self::default() }
     }
 
     /// The number of messages so far.
@@ -95,9 +92,7 @@ impl JointStates {
     /// The next messages are in another file of the bag.
     pub fn begin_file(&mut self) {
         let joints = self.topics.values_mut().flatten();
-        joints
-            .flat_map(|joint| &mut joint.clocks)
-            .for_each(|clock| clock.course.begin_file());
+        joints.flat_map(|joint| &mut joint.clocks).for_each(|clock| clock.course.begin_file());
     }
 
     /// Takes a message of `topic` that was logged at `logged` (ns).
@@ -192,11 +187,7 @@ impl JointStates {
             if is_stamped == 1 && self.runs.get(run).is_some_and(|next| time >= next.start) {
                 return Err(not_set_back(sample.number, topic));
             }
-            if let Some(windows) = self
-                .windows
-                .as_mut()
-                .filter(|_| wanted.is_none_or(|(at, _)| at != time))
-            {
+            if let Some(windows) = self.windows.as_mut().filter(|_| wanted.is_none_or(|(at, _)| at != time)) {
                 let topics = &mut self.topics;
                 let give_up = |windows: &BagWindows| {
                     let clocks = topics.values_mut().flatten().flat_map(|joint| &mut joint.clocks);
@@ -248,10 +239,8 @@ impl JointStates {
                 self.order.count_wrong((first, count), &topic);
             }
             if let (messages @ 1.., which) = unused {
-                let (with, those) = [
-                    ("without a stamp, or with the stamp 0,", "a stamp"),
-                    ("with a stamp", "none"),
-                ][which];
+                let (with, those) =
+                    [("without a stamp, or with the stamp 0,", "a stamp"), ("with a stamp", "none")][which];
                 let what = match messages {
                     1 => format!("{topic}: 1 message {with} was left out, because most have {those}"),
                     _ => format!("{topic}: {messages} messages {with} were left out, because most have {those}"),
@@ -284,10 +273,7 @@ impl JointStates {
         let base = base.map(|(topic, joints)| (topic.clone(), joints.iter().max_by_key(|joint| joint.fields[0].len())));
         let Some((base, Some(most))) = base.filter(|(_, joint)| joint.is_some_and(|joint| !joint.fields[0].is_empty()))
         else {
-            return Err(input.error(
-                format,
-                "its joint states have no positions; record a topic that has them",
-            ));
+            return Err(input.error(format, "its joint states have no positions; record a topic that has them"));
         };
         let times: Vec<i64> = most.fields[0].iter().map(|(time, _)| *time).collect();
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
@@ -313,9 +299,7 @@ impl JointStates {
         let begins = |run: &Run| stamps.partition_point(|time| *time < run.start);
         let breaks: Vec<usize> = self.runs.iter().map(begins).collect();
         let stamps = Column::Nanos(stamps);
-        let columns = columns
-            .into_iter()
-            .map(|(name, values)| (name, Column::Numbers(kept(values))));
+        let columns = columns.into_iter().map(|(name, values)| (name, Column::Numbers(kept(values))));
         let mut table = Table::of_columns(std::iter::once(("__time".to_owned(), stamps)).chain(columns).collect());
         table.warnings = warnings;
         table.breaks = breaks;
@@ -332,10 +316,7 @@ fn place(joints: &mut Vec<Joint>, (index, name): (usize, &&str)) -> usize {
         _ => joints.iter().position(|joint| joint.name == *name),
     };
     known.unwrap_or_else(|| {
-        joints.push(Joint {
-            name: (*name).to_owned(),
-            clocks: Default::default(),
-        });
+        joints.push(Joint { name: (*name).to_owned(), clocks: Default::default() });
         joints.len() - 1
     })
 }
@@ -369,10 +350,7 @@ fn join(
         let (values, between) = at(series, times);
         let found = values.iter().filter(|value| value.is_some()).count();
         if (found as f64) < COVERED * times.len() as f64 {
-            let what = format!(
-                "{name} was left out: it has values in {found} of {} rows only",
-                times.len()
-            );
+            let what = format!("{name} was left out: it has values in {found} of {} rows only", times.len());
             warnings.push(Warning::LeftOut { what });
             continue;
         }
@@ -380,16 +358,9 @@ fn join(
             *keep &= value.is_some();
         }
         (interpolated, left_out) = (between.max(interpolated), left_out.max(times.len() - found));
-        columns.push((
-            name,
-            values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
-        ));
+        columns.push((name, values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect()));
     }
     if interpolated + left_out > 0 {
-        warnings.push(Warning::Joined {
-            what: format!("{} in {topic}", joint.name),
-            interpolated,
-            left_out,
-        });
+        warnings.push(Warning::Joined { what: format!("{} in {topic}", joint.name), interpolated, left_out });
     }
 }

@@ -37,13 +37,7 @@ impl Origin {
     /// The columns of `plan` for which `keeps` returns the index of a joint, given the index of the column in the
     /// plan.
     pub(crate) fn of(plan: &Plan, keeps: impl Fn(usize) -> Option<usize>) -> Self {
-        let TimeColumn {
-            header,
-            factor,
-            nanos,
-            run,
-            ..
-        } = &plan.time;
+        let TimeColumn { header, factor, nanos, run, .. } = &plan.time;
         let columns = plan.channels.iter().enumerate().filter_map(|(index, channel)| {
             Some(OriginColumn {
                 joint: keeps(index)?,

@@ -36,10 +36,7 @@ impl RegularRecording {
             .map(|window| {
                 let from = ticks;
                 ticks += window.len();
-                Segment {
-                    ticks: from..ticks,
-                    start: start_of(window),
-                }
+                Segment { ticks: from..ticks, start: start_of(window) }
             })
             .collect();
         let whole = |signal: &mut Signal| signal.iter_mut().for_each(|values| keep(values, &kept));
@@ -49,12 +46,7 @@ impl RegularRecording {
         whole(&mut self.tau);
         self.qd.iter_mut().for_each(whole);
         self.qdd.iter_mut().for_each(whole);
-        for signal in [
-            &mut self.q_secondary,
-            &mut self.tau_current,
-            &mut self.current,
-            &mut self.temperature,
-        ] {
+        for signal in [&mut self.q_secondary, &mut self.tau_current, &mut self.current, &mut self.temperature] {
             partial(signal);
         }
         self.others.iter_mut().for_each(|(_, values)| keep(values, &kept));
@@ -108,22 +100,11 @@ mod tests {
     /// Time as the position, at 10 Hz, with a gap.
     fn regular() -> RegularRecording {
         let ticks = 5000;
-        let time: Vec<f64> = (0..ticks)
-            .map(|tick| tick as f64 * 0.1 + if tick < 3000 { 0.0 } else { 50.0 })
-            .collect();
+        let time: Vec<f64> = (0..ticks).map(|tick| tick as f64 * 0.1 + if tick < 3000 { 0.0 } else { 50.0 }).collect();
         RegularRecording {
             joints: vec!["a".into()],
             period: 0.1,
-            segments: vec![
-                Segment {
-                    ticks: 0..3000,
-                    start: 0.0,
-                },
-                Segment {
-                    ticks: 3000..ticks,
-                    start: 350.0,
-                },
-            ],
+            segments: vec![Segment { ticks: 0..3000, start: 0.0 }, Segment { ticks: 3000..ticks, start: 350.0 }],
             present: vec![true; ticks],
             q: vec![time.clone()],
             tau: vec![time.clone()],

@@ -43,11 +43,8 @@ pub struct Quality {
 impl Quality {
     /// The quality of `recording`, where `regular` is the same recording on its clock.
     pub fn of(recording: &Recording, regular: &RegularRecording) -> Self {
-        let motions: Vec<slopes::Slopes> = regular
-            .q
-            .iter()
-            .map(|q| slopes::Slopes::of(q, &regular.segments, regular.period))
-            .collect();
+        let motions: Vec<slopes::Slopes> =
+            regular.q.iter().map(|q| slopes::Slopes::of(q, &regular.segments, regular.period)).collect();
         let mut joints: Vec<JointQuality> = (0..regular.joints.len())
             .map(|joint| JointQuality::of(recording, regular, joint, &motions[joint]))
             .collect();

@@ -81,9 +81,9 @@ impl RegularRecording {
     /// The time of a tick (s).
     pub fn time(&self, tick: usize) -> f64 {
         let at = self.segments.partition_point(|segment| segment.ticks.end <= tick);
-        self.segments.get(at).map_or(f64::NAN, |segment| {
-            segment.start + (tick - segment.ticks.start) as f64 * self.period
-        })
+        self.segments
+            .get(at)
+            .map_or(f64::NAN, |segment| segment.start + (tick - segment.ticks.start) as f64 * self.period)
     }
 
     /// Shifts the time so that it starts `seconds` earlier.
@@ -154,10 +154,7 @@ impl Recording {
         let mut segments = Vec::new();
         let mut ticks = 0;
         for stretch in &stretches {
-            segments.push(Segment {
-                ticks: ticks..ticks + stretch.ticks,
-                start: stretch.start,
-            });
+            segments.push(Segment { ticks: ticks..ticks + stretch.ticks, start: stretch.start });
             ticks += stretch.ticks;
         }
         let mut present = vec![false; ticks];
@@ -181,20 +178,13 @@ impl Recording {
             period: clock.period,
             q: resample.signal(Quantity::Position, &self.q),
             qd: self.qd.as_ref().map(|qd| resample.signal(Quantity::Velocity, qd)),
-            qdd: self
-                .qdd
-                .as_ref()
-                .map(|qdd| resample.signal(Quantity::Acceleration, qdd)),
+            qdd: self.qdd.as_ref().map(|qdd| resample.signal(Quantity::Acceleration, qdd)),
             tau: resample.signal(Quantity::Torque, &self.tau),
             q_secondary: resample.partial(Quantity::SecondaryPosition, &self.q_secondary),
             tau_current: resample.partial(Quantity::CurrentTorque, &self.tau_current),
             current: resample.partial(Quantity::Current, &self.current),
             temperature: resample.partial(Quantity::Temperature, &self.temperature),
-            others: self
-                .others
-                .iter()
-                .map(|(name, values)| (name.clone(), resample.channel(None, values)))
-                .collect(),
+            others: self.others.iter().map(|(name, values)| (name.clone(), resample.channel(None, values))).collect(),
             segments,
             present,
             has_clock: clock.regular,
@@ -235,9 +225,7 @@ impl Recording {
                     (places.collect(), piece.start + first as f64 * clock.period)
                 } else {
                     let origin = self.time[begun];
-                    let places = self.time[begun..=row]
-                        .iter()
-                        .map(|stamp| (stamp - origin) / clock.period);
+                    let places = self.time[begun..=row].iter().map(|stamp| (stamp - origin) / clock.period);
                     (places.collect(), origin)
                 };
                 // A restart of the clock was reported while reading, and between windows nothing is missing.
@@ -249,12 +237,7 @@ impl Recording {
                     });
                 }
                 let ticks = 1 + places.last().map_or(0, |place| (place + 1e-6).floor() as usize);
-                stretches.push(Stretch {
-                    rows: begun..row + 1,
-                    places,
-                    ticks,
-                    start,
-                });
+                stretches.push(Stretch { rows: begun..row + 1, places, ticks, start });
                 begun = row + 1;
             }
         }
@@ -295,26 +278,17 @@ struct Resampler<'a> {
 
 impl Resampler<'_> {
     fn signal(&mut self, quantity: Quantity, signal: &Signal) -> Signal {
-        (0..signal.len())
-            .map(|joint| self.channel(Some((quantity, joint)), &signal[joint]))
-            .collect()
+        (0..signal.len()).map(|joint| self.channel(Some((quantity, joint)), &signal[joint])).collect()
     }
 
     fn partial(&mut self, quantity: Quantity, signal: &PartialSignal) -> PartialSignal {
         (0..signal.len())
-            .map(|joint| {
-                signal[joint]
-                    .as_ref()
-                    .map(|values| self.channel(Some((quantity, joint)), values))
-            })
+            .map(|joint| signal[joint].as_ref().map(|values| self.channel(Some((quantity, joint)), values)))
             .collect()
     }
 
     fn channel(&mut self, what: Option<(Quantity, usize)>, values: &[f64]) -> Vec<f64> {
-        let count = self
-            .stretches
-            .last()
-            .map_or(0, |_| self.stretches.iter().map(|s| s.ticks).sum());
+        let count = self.stretches.last().map_or(0, |_| self.stretches.iter().map(|s| s.ticks).sum());
         let mut resampled = Vec::with_capacity(count);
         let mut times = Vec::new();
         let mut largest = 0.0_f64;
@@ -324,11 +298,7 @@ impl Resampler<'_> {
             if matches!(what, Some((quantity, _)) if quantity != Quantity::Temperature) {
                 for spike in spikes::remove(&stretch.places, &mut values) {
                     times.push(stretch.start + stretch.places[spike.row] * self.period);
-                    largest = if spike.height.abs() > largest.abs() {
-                        spike.height
-                    } else {
-                        largest
-                    };
+                    largest = if spike.height.abs() > largest.abs() { spike.height } else { largest };
                 }
             }
             self.put(stretch, values, what.is_some(), &mut resampled);

@@ -21,12 +21,7 @@ fn an_even_recording_stays_as_it_is() {
     assert_eq!((&regular.q, &regular.tau), (&recording.q, &recording.tau));
     assert!(regular.present.iter().all(|present| *present));
     assert_eq!((regular.period, regular.segments.len()), (0.004, 1));
-    assert!(
-        regular
-            .times()
-            .zip(&at)
-            .all(|(tick, stamp)| (tick - stamp).abs() < 1e-9)
-    );
+    assert!(regular.times().zip(&at).all(|(tick, stamp)| (tick - stamp).abs() < 1e-9));
     assert!((regular.time(500) - 2.0).abs() < 1e-9);
 }
 
@@ -35,11 +30,7 @@ fn lost_rows_are_interpolated_and_long_gaps_part() {
     let all: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.002).collect();
     let kept = |k: usize| !(k % 97 == 50 || (600..603).contains(&k) || (1200..1300).contains(&k));
     let at: Vec<f64> = (0..2000).filter(|&k| kept(k)).map(|k| all[k]).collect();
-    let jittered = at
-        .iter()
-        .enumerate()
-        .map(|(k, t)| t + 2e-4 * (k as f64 * 1.7).sin())
-        .collect();
+    let jittered = at.iter().enumerate().map(|(k, t)| t + 2e-4 * (k as f64 * 1.7).sin()).collect();
     let (regular, warnings) = sample(jittered, &at).regular().expect("it has a clock");
     assert_eq!(regular.segments.len(), 2);
     assert_eq!(regular.len(), 1900);
@@ -50,11 +41,7 @@ fn lost_rows_are_interpolated_and_long_gaps_part() {
     }
     let lost = (0..2000).filter(|&k| !kept(k) && !(1200..1300).contains(&k)).count();
     assert_eq!(regular.present.iter().filter(|present| !**present).count(), lost);
-    assert!(
-        warnings
-            .iter()
-            .any(|w| matches!(w, Warning::LostRows { rows, of: 1900, .. } if *rows == lost))
-    );
+    assert!(warnings.iter().any(|w| matches!(w, Warning::LostRows { rows, of: 1900, .. } if *rows == lost)));
     assert!(warnings.iter().any(|w| matches!(w, Warning::Gap { .. })));
     assert!(warnings.iter().any(|w| matches!(w, Warning::Jitter { .. })));
     // On its ticks, the sine differentiates cleanly.
@@ -87,19 +74,13 @@ fn spikes_are_reported_with_joint_and_time() {
     let (regular, warnings) = recording.regular().expect("it has a clock");
     assert!((regular.q[0][500] - (3.0 * at[500]).sin()).abs() < 1e-6);
     let found: Vec<String> = warnings.iter().map(Warning::to_string).collect();
-    assert!(
-        found[0].contains("q_a: 1 single-sample spike") && found[0].contains("2.000"),
-        "{found:?}"
-    );
+    assert!(found[0].contains("q_a: 1 single-sample spike") && found[0].contains("2.000"), "{found:?}");
     assert!(found[1].contains("tau_a") && found[1].contains("1.000"), "{found:?}");
 }
 
 #[test]
 fn what_has_no_order_or_length_is_refused() {
-    assert!(matches!(
-        sample(vec![0.0], &[0.0]).regular(),
-        Err(RecordingError::TooShort { .. })
-    ));
+    assert!(matches!(sample(vec![0.0], &[0.0]).regular(), Err(RecordingError::TooShort { .. })));
     let back = sample(vec![0.0, 1.0, 0.5], &[0.0, 1.0, 0.5]).regular();
     assert!(matches!(back, Err(RecordingError::Time { row: 2, .. })));
 }

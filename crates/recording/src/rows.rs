@@ -225,10 +225,7 @@ impl<'a> Rows<'a> {
         }
         match &self.states[index] {
             State::New if cell.is_missing() => {
-                self.states[index] = State::Missing {
-                    place: row.place,
-                    found: cell.shown(),
-                };
+                self.states[index] = State::Missing { place: row.place, found: cell.shown() };
                 Ok(f64::NAN)
             }
             State::Missing { .. } if cell.is_missing() => Ok(f64::NAN),
@@ -236,10 +233,7 @@ impl<'a> Rows<'a> {
                 row,
                 channel.index,
                 &channel.header,
-                unusable(
-                    cell,
-                    "delete the row: a row that is missing is a gap, and gaps are dealt with",
-                ),
+                unusable(cell, "delete the row: a row that is missing is a gap, and gaps are dealt with"),
             )),
         }
     }
@@ -256,11 +250,7 @@ impl<'a> Rows<'a> {
     }
 
     fn row_error(&self, row: &Row<'_>, reason: String) -> RecordingError {
-        RecordingError::Row {
-            path: self.path.to_owned(),
-            place: row.place,
-            reason,
-        }
+        RecordingError::Row { path: self.path.to_owned(), place: row.place, reason }
     }
 
     /// Counts a row with the stamp of the previous row. Whether its values are the same, too.
@@ -304,12 +294,7 @@ impl<'a> Rows<'a> {
         let before = self.stamp;
         self.shift += self.stamp + RUN_PAUSE - stamp;
         self.first = stamp;
-        self.warnings.push(Warning::ClockRestart {
-            line: row.place,
-            before,
-            after: stamp,
-            placed: stamp + self.shift,
-        });
+        self.warnings.push(Warning::ClockRestart { line: row.place, before, after: stamp, placed: stamp + self.shift });
         Ok(())
     }
 
@@ -328,11 +313,7 @@ impl<'a> Rows<'a> {
                 (0, _) => "there are no rows below the header; a motion takes at least two, and a fit thousands".into(),
                 _ => "there is one row below the header; a motion takes at least two, and a fit thousands".into(),
             };
-            return Err(RecordingError::Header {
-                path,
-                has_lines: self.has_lines,
-                reason,
-            });
+            return Err(RecordingError::Header { path, has_lines: self.has_lines, reason });
         }
         if self.differing as f64 > DIFFERING_SHARE * rows as f64 + 1.0 {
             return Err(RecordingError::Row {
@@ -347,33 +328,22 @@ impl<'a> Rows<'a> {
         }
         self.warnings.extend(warnings);
         if self.duplicates > 0 {
-            self.warnings.push(Warning::Duplicates {
-                rows: self.duplicates,
-                line: self.duplicate_place,
-            });
+            self.warnings.push(Warning::Duplicates { rows: self.duplicates, line: self.duplicate_place });
         }
         if self.differing > 0 {
-            self.warnings.push(Warning::EqualStamps {
-                rows: self.differing,
-                line: self.differing_place,
-            });
+            self.warnings.push(Warning::EqualStamps { rows: self.differing, line: self.differing_place });
         }
         if let (Some((_, column)), 2..) = (&self.plan.time.run, self.runs) {
             let (runs, column) = (self.runs, column.clone());
             self.warnings.push(Warning::Runs { runs, column });
         }
         // A joint without any values is omitted; if no joint has values, the first one is the error.
-        let lacking = self
-            .plan
-            .channels
-            .iter()
-            .zip(&self.states)
-            .find_map(|(channel, state)| {
-                let State::Missing { place, found } = state else {
-                    return None;
-                };
-                Some(missing(self.path, channel, *place, found.clone()))
-            });
+        let lacking = self.plan.channels.iter().zip(&self.states).find_map(|(channel, state)| {
+            let State::Missing { place, found } = state else {
+                return None;
+            };
+            Some(missing(self.path, channel, *place, found.clone()))
+        });
         let left_out = self.values.left_out();
         let (columns, breaks, span) = self.values.finish();
         if let Some(span) = span {

@@ -58,15 +58,10 @@ pub fn remove(places: &[f64], values: &mut [f64]) -> Vec<Spike> {
     let off = residuals(places, values);
     let mut sizes: Vec<f64> = off.iter().map(|off| off.abs()).collect();
     let tail = *sizes.select_nth_unstable_by(count * 98 / 100, f64::total_cmp).1;
-    let (low, high) = values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
-            (low.min(v), high.max(v))
-        });
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
     // In a short piece, a sixth of the samples are affected by one spike: rounding must not decide such a tie.
-    let floor = (TAIL * tail * (1.0 - 1e-9))
-        .max(RANGE * (high - low))
-        .max(STEPS * smallest_step(values));
+    let floor = (TAIL * tail * (1.0 - 1e-9)).max(RANGE * (high - low)).max(STEPS * smallest_step(values));
     let mut spikes: Vec<Spike> = Vec::new();
     for k in 3..count.saturating_sub(3) {
         // Few samples reach this point, so that the following may take longer.
@@ -85,10 +80,7 @@ pub fn remove(places: &[f64], values: &mut [f64]) -> Vec<Spike> {
             .into_iter()
             .all(|near| (values[near] - predicted(places, values, near)).abs() < NEIGHBOUR * off[k].abs());
         if quiet {
-            spikes.push(Spike {
-                row: k,
-                height: seen - values[k],
-            });
+            spikes.push(Spike { row: k, height: seen - values[k] });
         } else {
             values[k] = seen;
         }
@@ -105,10 +97,7 @@ pub fn remove(places: &[f64], values: &mut [f64]) -> Vec<Spike> {
 /// The noise of the residuals around sample `k`, without the sample itself and those that it affects.
 fn local_noise(off: &[f64], k: usize) -> f64 {
     let around = k.saturating_sub(WINDOW)..(k + WINDOW).min(off.len());
-    let mut sizes: Vec<f64> = around
-        .filter(|&row| row.abs_diff(k) > 2)
-        .map(|row| off[row].abs())
-        .collect();
+    let mut sizes: Vec<f64> = around.filter(|&row| row.abs_diff(k) > 2).map(|row| off[row].abs()).collect();
     let middle = sizes.len() / 2;
     if sizes.is_empty() {
         return 0.0;
@@ -162,11 +151,7 @@ mod tests {
             values[40] -= 8.0 * scale;
             values[222] += 2.5 * scale;
             let spikes = remove(&places(350), &mut values);
-            assert_eq!(
-                spikes.iter().map(|spike| spike.row).collect::<Vec<_>>(),
-                [40],
-                "{scale}"
-            );
+            assert_eq!(spikes.iter().map(|spike| spike.row).collect::<Vec<_>>(), [40], "{scale}");
         }
     }
 

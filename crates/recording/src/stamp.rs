@@ -66,9 +66,7 @@ impl Stamps {
 
     /// The time of a stamp of `whole` seconds plus a `rest`.
     fn from(&mut self, whole: i64, rest: f64) -> f64 {
-        let origin = *self
-            .origin
-            .get_or_insert(if whole.abs() > CALENDAR { whole } else { 0 });
+        let origin = *self.origin.get_or_insert(if whole.abs() > CALENDAR { whole } else { 0 });
         whole.saturating_sub(origin) as f64 + rest
     }
 }

@@ -63,10 +63,7 @@ pub fn eliminate<const N: usize>(left: &mut [[f64; N]; N], whole: &[[f64; N]; N]
     }
     for (other, values) in left.iter_mut().enumerate() {
         let share = row[other] / own;
-        values
-            .iter_mut()
-            .zip(row)
-            .for_each(|(value, row)| *value -= share * row);
+        values.iter_mut().zip(row).for_each(|(value, row)| *value -= share * row);
     }
     Some(row)
 }
@@ -94,22 +91,13 @@ mod tests {
         assert_eq!(moments([1.0, 3.0].iter()), (2.0, 1.0));
         assert_eq!(median(vec![4.0, 1.0, 3.0, 2.0]), 3.0);
         let mut values = [4.0, 1.0, 3.0, 2.0];
-        assert_eq!(
-            [0.0, 0.5, 1.0].map(|share| quantile(&mut values, share)),
-            [1.0, 3.0, 4.0]
-        );
-        assert_eq!(
-            [0.0, 0.5, 1.0].map(|share| quantile_of_sorted(&[1.0, 2.0, 3.0, 4.0], share)),
-            [1.0, 3.0, 4.0]
-        );
+        assert_eq!([0.0, 0.5, 1.0].map(|share| quantile(&mut values, share)), [1.0, 3.0, 4.0]);
+        assert_eq!([0.0, 0.5, 1.0].map(|share| quantile_of_sorted(&[1.0, 2.0, 3.0, 4.0], share)), [1.0, 3.0, 4.0]);
     }
 
     #[test]
     fn of_no_values() {
         assert_eq!(rms([]), None);
-        assert_eq!(
-            [mean_square([]), median(Vec::new()), quantile_of_sorted(&[], 0.5)],
-            [0.0; 3]
-        );
+        assert_eq!([mean_square([]), median(Vec::new()), quantile_of_sorted(&[], 0.5)], [0.0; 3]);
     }
 }

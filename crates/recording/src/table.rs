@@ -50,11 +50,7 @@ impl Cell<'_> {
             Self::Integer(value) | Self::Nanos(value) => value.to_string(),
         };
         let short: String = text.chars().take(40).collect();
-        if short.len() < text.len() {
-            format!("{short}…")
-        } else {
-            short
-        }
+        if short.len() < text.len() { format!("{short}…") } else { short }
     }
 }
 
@@ -118,10 +114,7 @@ enum Cells<'a> {
 impl<'a> Row<'a> {
     /// A row of text, which has as many cells as there are columns.
     pub fn of_text(record: &'a ByteRecord) -> Self {
-        Self {
-            place: Place::Line(record.position().map_or(1, csv::Position::line)),
-            cells: Cells::Record(record),
-        }
+        Self { place: Place::Line(record.position().map_or(1, csv::Position::line)), cells: Cells::Record(record) }
     }
 
     /// The value in a column.
@@ -191,9 +184,6 @@ impl RowSource for Held {
             return Ok(None);
         }
         self.next += 1;
-        Ok(Some(Row {
-            place: Place::Row(self.next as u64),
-            cells: Cells::Columns(&self.columns, self.next - 1),
-        }))
+        Ok(Some(Row { place: Place::Row(self.next as u64), cells: Cells::Columns(&self.columns, self.next - 1) }))
     }
 }

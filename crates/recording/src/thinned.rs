@@ -106,10 +106,7 @@ impl Thinned {
             if begins {
                 self.breaks.push(self.columns[0].len());
             }
-            self.columns
-                .iter_mut()
-                .zip(row)
-                .for_each(|(column, &value)| column.push(value));
+            self.columns.iter_mut().zip(row).for_each(|(column, &value)| column.push(value));
         }
         // A span that is being summed keeps its place: it ends before the next doubled one.
         if self.columns[0].len() >= self.most && self.windows.is_none() {
@@ -175,13 +172,7 @@ fn give_up(columns: &mut [Vec<f64>], breaks: &mut Vec<usize>, begun: &mut Vec<(u
     let rows = columns[0].len();
     let ends = begun.iter().skip(1).map(|(_, first)| *first).chain([rows]);
     let spans: Vec<_> = begun.iter().zip(ends).map(|(&(_, first), end)| first..end).collect();
-    let kept = || {
-        spans
-            .iter()
-            .zip(taken)
-            .filter(|(_, taken)| **taken)
-            .map(|(span, _)| span)
-    };
+    let kept = || spans.iter().zip(taken).filter(|(_, taken)| **taken).map(|(span, _)| span);
     for column in columns.iter_mut() {
         let mut to = 0;
         for span in kept() {
@@ -190,11 +181,7 @@ fn give_up(columns: &mut [Vec<f64>], breaks: &mut Vec<usize>, begun: &mut Vec<(u
         }
         column.truncate(to);
     }
-    let rows_before = |row: usize| {
-        kept()
-            .map(|span| span.end.min(row).saturating_sub(span.start))
-            .sum::<usize>()
-    };
+    let rows_before = |row: usize| kept().map(|span| span.end.min(row).saturating_sub(span.start)).sum::<usize>();
     for row in breaks.iter_mut() {
         *row = rows_before(*row);
     }

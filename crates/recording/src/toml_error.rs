@@ -2,23 +2,15 @@
 
 /// Keys that only one kind of file has.
 const KINDS: [(&[&str], &str); 3] = [
-    (
-        &["controller", "reference", "duration", "plant", "sensors", "training"],
-        "a scenario (--scenario)",
-    ),
-    (
-        &["time", "joints", "system", "topics", "delimiter"],
-        "a column map (--map)",
-    ),
+    (&["controller", "reference", "duration", "plant", "sensors", "training"], "a scenario (--scenario)"),
+    (&["time", "joints", "system", "topics", "delimiter"], "a column map (--map)"),
     (&["effects"], "a model of effects (--known)"),
 ];
 
 /// The error that the key `unknown` is none of the `known` ones, with the nearest of them.
 pub fn unknown_key(unknown: &str, known: &[String]) -> String {
     // A file of another kind that was given in its place.
-    let kind = KINDS
-        .iter()
-        .find(|(keys, _)| keys.contains(&unknown) && !known.iter().any(|key| key == unknown));
+    let kind = KINDS.iter().find(|(keys, _)| keys.contains(&unknown) && !known.iter().any(|key| key == unknown));
     let hint = match (kind, nearest(unknown, known)) {
         (Some((_, kind)), _) => format!("is this {kind}? "),
         (None, Some(nearest)) => format!("did you mean `{nearest}`? "),

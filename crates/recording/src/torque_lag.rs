@@ -15,11 +15,7 @@ impl RegularRecording {
         let late = lag / self.period;
         let whole = late.floor();
         let part = late - whole;
-        let kept: Vec<Segment> = self
-            .segments
-            .iter()
-            .filter_map(|one| self.kept(one, whole as i64))
-            .collect();
+        let kept: Vec<Segment> = self.segments.iter().filter_map(|one| self.kept(one, whole as i64)).collect();
         let ranges: Vec<Range<usize>> = kept.iter().map(|segment| segment.ticks.clone()).collect();
         let moved = |signal: &Vec<f64>| -> Vec<f64> {
             let at = |tick: usize| {
@@ -54,11 +50,7 @@ impl RegularRecording {
             tau_current: partial(&self.tau_current),
             current: partial(&self.current),
             temperature: partial(&self.temperature),
-            others: self
-                .others
-                .iter()
-                .map(|(name, values)| (name.clone(), signal(values)))
-                .collect(),
+            others: self.others.iter().map(|(name, values)| (name.clone(), signal(values))).collect(),
             segments,
             ..*self
         }
@@ -69,19 +61,14 @@ impl RegularRecording {
         let Range { start, end } = segment.ticks;
         let first = start.max(usize::try_from(start as i64 - whole + SIDE as i64 - 1).unwrap_or(0));
         let last = end.min(usize::try_from(end as i64 - whole - SIDE as i64).unwrap_or(0));
-        (first < last).then(|| Segment {
-            ticks: first..last,
-            start: segment.start + (first - start) as f64 * self.period,
-        })
+        (first < last)
+            .then(|| Segment { ticks: first..last, start: segment.start + (first - start) as f64 * self.period })
     }
 }
 
 /// The values at ticks in `ranges`.
 fn of<T: Clone>(ranges: &[Range<usize>], values: &[T]) -> Vec<T> {
-    ranges
-        .iter()
-        .flat_map(|range| values[range.clone()].iter().cloned())
-        .collect()
+    ranges.iter().flat_map(|range| values[range.clone()].iter().cloned()).collect()
 }
 
 #[cfg(test)]
@@ -91,13 +78,8 @@ mod tests {
     /// Two segments, with torques `lag` (s) behind the positions.
     fn recording(lag: f64) -> RegularRecording {
         let starts = [3.0, 9.0];
-        let segments: Vec<Segment> = (0..)
-            .zip(starts)
-            .map(|(k, start)| Segment {
-                ticks: 200 * k..200 * (k + 1),
-                start,
-            })
-            .collect();
+        let segments: Vec<Segment> =
+            (0..).zip(starts).map(|(k, start)| Segment { ticks: 200 * k..200 * (k + 1), start }).collect();
         let mut recording = RegularRecording {
             joints: vec!["a".into()],
             start: 3.0,
@@ -119,18 +101,9 @@ mod tests {
         for lag in [0.0, 0.004, 0.02, 0.0337, -0.0146] {
             let mended = recording(lag).without_torque_lag(lag);
             let lost = 400 - mended.len();
-            assert!(
-                lost <= 2 * (2 + (lag.abs() / 0.01).ceil() as usize) + 2,
-                "{lag}: {lost} lost"
-            );
+            assert!(lost <= 2 * (2 + (lag.abs() / 0.01).ceil() as usize) + 2, "{lag}: {lost} lost");
             assert_eq!(mended.segments.len(), 2);
-            assert!(
-                mended
-                    .times()
-                    .zip(&mended.others[0].1)
-                    .all(|(tick, mark)| (tick - mark).abs() < 1e-9),
-                "{lag}"
-            );
+            assert!(mended.times().zip(&mended.others[0].1).all(|(tick, mark)| (tick - mark).abs() < 1e-9), "{lag}");
             let off = mended.q[0].iter().zip(&mended.tau[0]).map(|(q, tau)| (q - tau).abs());
             assert!(off.fold(0.0, f64::max) < 1e-6, "{lag}");
         }
@@ -141,16 +114,7 @@ mod tests {
         let mut recording = recording(0.5);
         recording.segments[0].ticks = 0..200;
         assert!(recording.without_torque_lag(5.0).is_empty());
-        recording.segments = vec![
-            Segment {
-                ticks: 0..20,
-                start: 3.0,
-            },
-            Segment {
-                ticks: 20..400,
-                start: 9.0,
-            },
-        ];
+        recording.segments = vec![Segment { ticks: 0..20, start: 3.0 }, Segment { ticks: 20..400, start: 9.0 }];
         let mended = recording.without_torque_lag(0.5);
         assert_eq!(mended.segments.len(), 1);
         assert_eq!(mended.start, mended.segments[0].start);

@@ -8,13 +8,7 @@ type Unit = (&'static [&'static str], f64);
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const TURN: f64 = std::f64::consts::TAU;
 
-const TIME: &[Unit] = &[
-    (&["s"], 1.0),
-    (&["ms"], 1e-3),
-    (&["us", "µs"], 1e-6),
-    (&["ns"], 1e-9),
-    (&["min"], 60.0),
-];
+const TIME: &[Unit] = &[(&["s"], 1.0), (&["ms"], 1e-3), (&["us", "µs"], 1e-6), (&["ns"], 1e-9), (&["min"], 60.0)];
 const POSITION: &[Unit] = &[
     (&["rad"], 1.0),
     (&["mrad"], 1e-3),
@@ -40,13 +34,8 @@ const ACCELERATION: &[Unit] = &[
     (&["m/s2", "m/s^2", "m/s²"], 1.0),
     (&["mm/s2", "mm/s^2", "mm/s²"], 1e-3),
 ];
-const TORQUE: &[Unit] = &[
-    (&["N m", "Nm", "N*m"], 1.0),
-    (&["mN m", "mNm"], 1e-3),
-    (&["kN m", "kNm"], 1e3),
-    (&["N"], 1.0),
-    (&["kN"], 1e3),
-];
+const TORQUE: &[Unit] =
+    &[(&["N m", "Nm", "N*m"], 1.0), (&["mN m", "mNm"], 1e-3), (&["kN m", "kNm"], 1e3), (&["N"], 1.0), (&["kN"], 1e3)];
 /// Units of currents, which need a scale to become a torque (N m/A, or N m for the whole).
 const CURRENT: &[Unit] = &[(&["A"], 1.0), (&["mA"], 1e-3)];
 const SHARE: &[Unit] = &[(&["%"], 1e-2)];
@@ -65,11 +54,7 @@ pub struct Conversion {
 
 impl Conversion {
     /// The conversion of a value in SI.
-    pub const NONE: Self = Self {
-        factor: 1.0,
-        offset: 0.0,
-        needs_scale: false,
-    };
+    pub const NONE: Self = Self { factor: 1.0, offset: 0.0, needs_scale: false };
 }
 
 fn find(units: &[Unit], name: &str) -> Option<f64> {
@@ -78,11 +63,7 @@ fn find(units: &[Unit], name: &str) -> Option<f64> {
 }
 
 fn names(tables: &[&[Unit]]) -> String {
-    let all: Vec<&str> = tables
-        .iter()
-        .flat_map(|units| units.iter())
-        .map(|(names, _)| names[0])
-        .collect();
+    let all: Vec<&str> = tables.iter().flat_map(|units| units.iter()).map(|(names, _)| names[0]).collect();
     all.join(", ")
 }
 
@@ -102,25 +83,13 @@ pub fn of(quantity: Quantity, name: &str) -> Result<Conversion, String> {
         Quantity::Current => (CURRENT, &[]),
         Quantity::Temperature => (TEMPERATURE, &[]),
     };
-    let offset = if quantity == Quantity::Temperature && name == "K" {
-        -273.15
-    } else {
-        0.0
-    };
+    let offset = if quantity == Quantity::Temperature && name == "K" { -273.15 } else { 0.0 };
     if let Some(factor) = find(units, name) {
-        return Ok(Conversion {
-            factor,
-            offset,
-            needs_scale: false,
-        });
+        return Ok(Conversion { factor, offset, needs_scale: false });
     }
     for other in scaled {
         if let Some(factor) = find(other, name) {
-            return Ok(Conversion {
-                factor,
-                offset,
-                needs_scale: true,
-            });
+            return Ok(Conversion { factor, offset, needs_scale: true });
         }
     }
     let mut tables = vec![units];
@@ -141,10 +110,6 @@ mod tests {
         assert!(of(Quantity::Torque, "A").expect("it is known").needs_scale);
         assert_eq!(of(Quantity::Temperature, "K").expect("it is known").offset, -273.15);
         assert_eq!(time("us"), Ok(1e-6));
-        assert!(
-            of(Quantity::Position, "furlong")
-                .expect_err("it is not")
-                .contains("deg, turn")
-        );
+        assert!(of(Quantity::Position, "furlong").expect_err("it is not").contains("deg, turn"));
     }
 }

@@ -234,26 +234,14 @@ impl fmt::Display for Warning {
                 f,
                 "positions change in one of {held} rows only, other signals more often: {samples} of {rows} rows, with new positions, are used"
             ),
-            Self::ClockRestart {
-                line,
-                before,
-                after,
-                placed,
-            } => write!(
+            Self::ClockRestart { line, before, after, placed } => write!(
                 f,
                 "{line}: time starts again ({before} s, then {after} s): treated as another run, placed at {placed:.6} s"
             ),
             Self::ColumnLeftOut { column, line, found } => {
-                write!(
-                    f,
-                    "{line}: column \"{column}\" is \"{found}\", not a number; the column was left out"
-                )
+                write!(f, "{line}: column \"{column}\" is \"{found}\", not a number; the column was left out")
             }
-            Self::System {
-                system,
-                columns,
-                numbered,
-            } => {
+            Self::System { system, columns, numbered } => {
                 write!(f, "the columns are those of {system}: {columns}")?;
                 if *numbered {
                     write!(f, "; its joints have numbers, and are taken in the URDF's order")?;
@@ -264,23 +252,14 @@ impl fmt::Display for Warning {
                 f,
                 "{runs} runs, by column \"{column}\": each is treated as a run of its own, {RUN_PAUSE} s after the one before"
             ),
-            Self::Joined {
-                what,
-                interpolated,
-                left_out,
-            } => {
+            Self::Joined { what, interpolated, left_out } => {
                 write!(f, "{what} has stamps of its own and was joined by time: ")?;
                 write!(
                     f,
                     "{interpolated} rows interpolated, {left_out} left out before its first stamp, after its last, or in its gaps"
                 )
             }
-            Self::OutOfOrder {
-                topic,
-                line,
-                messages,
-                largest,
-            } => {
+            Self::OutOfOrder { topic, line, messages, largest } => {
                 let (are, were) = match messages {
                     1 => ("message is", "was"),
                     _ => ("messages are", "were"),
@@ -306,21 +285,13 @@ impl fmt::Display for Warning {
             Self::JointLeftOut { joint, column } => {
                 write!(f, "{joint} was left out: column \"{column}\" has no values")
             }
-            Self::Unwrapped {
-                joint,
-                quantity,
-                jumps,
-                time,
-            } => write!(
+            Self::Unwrapped { joint, quantity, jumps, time } => write!(
                 f,
                 "{}{joint}: the encoder wraps at a turn {jumps} {} (first at {time:.3} s); the positions were made continuous",
                 quantity.prefix(),
                 if *jumps == 1 { "time" } else { "times" }
             ),
-            Self::NoVelocity => write!(
-                f,
-                "there is no velocity (qd_<joint>); it is differentiated from the position"
-            ),
+            Self::NoVelocity => write!(f, "there is no velocity (qd_<joint>); it is differentiated from the position"),
             Self::Jitter { rms, max, time, period } => write!(
                 f,
                 "the time stamps deviate from a clock of {:.2} Hz by {:.1} % of its period (at most {:.0} %, at {time:.3} s); \
@@ -359,12 +330,7 @@ impl fmt::Display for Warning {
                 f,
                 "no rows from {from:.4} s to {to:.4} s, after which the samples are {shift:.2} periods off the clock of those before; treated as separate segments"
             ),
-            Self::Spikes {
-                joint,
-                quantity,
-                times,
-                largest,
-            } => {
+            Self::Spikes { joint, quantity, times, largest } => {
                 let shown: Vec<String> = times.iter().take(5).map(|time| format!("{time:.3}")).collect();
                 let more = if times.len() > shown.len() { ", …" } else { "" };
                 write!(
@@ -385,11 +351,7 @@ impl fmt::Display for Warning {
 fn short(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 || (1e-3..1e4).contains(&magnitude) {
-        let digits = if value == 0.0 {
-            0.0
-        } else {
-            3.0 - magnitude.log10().floor()
-        };
+        let digits = if value == 0.0 { 0.0 } else { 3.0 - magnitude.log10().floor() };
         format!("{value:.*}", digits.max(0.0) as usize)
     } else {
         format!("{value:.3e}")

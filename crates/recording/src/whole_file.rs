@@ -36,10 +36,7 @@ pub fn write_whole(
         file.persist(path).map_err(|error| error.error)?;
         Ok(())
     };
-    attempt().map_err(|reason| RecordingError::Write {
-        path: path.to_owned(),
-        reason: of_system(reason),
-    })
+    attempt().map_err(|reason| RecordingError::Write { path: path.to_owned(), reason: of_system(reason) })
 }
 
 /// The system's error, from which the remedy is known, without those of libraries around it (of a CSV, of a temporary file).
@@ -95,10 +92,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_is_said_of_a_csv_too() {
-        let recording = crate::Recording {
-            time: vec![0.0; 10_000],
-            ..Default::default()
-        };
+        let recording = crate::Recording { time: vec![0.0; 10_000], ..Default::default() };
         let error = recording.write_csv(Path::new("/dev/full")).expect_err("it is full");
         let said = "/dev/full: cannot be written: No space left on device (os error 28); the disk is full: free some space, \
                     or choose another disk";
@@ -114,16 +108,8 @@ mod tests {
             w.write_all(b"new")?;
             Err(std::io::Error::other("the disk is full"))
         });
-        assert!(
-            failed
-                .expect_err("the second fails")
-                .to_string()
-                .contains("the disk is full")
-        );
+        assert!(failed.expect_err("the second fails").to_string().contains("the disk is full"));
         assert_eq!(std::fs::read(&path).expect("the file is there"), b"old");
-        assert_eq!(
-            std::fs::read_dir(folder.path()).expect("the folder is there").count(),
-            1
-        );
+        assert_eq!(std::fs::read_dir(folder.path()).expect("the folder is there").count(), 1);
     }
 }

@@ -46,16 +46,7 @@ pub enum Next {
 impl Windows {
     /// Windows of which `most` (s) are held: all of a recording that is not longer.
     pub fn new(most: f64) -> Self {
-        Self {
-            most,
-            level: 0,
-            number: 0,
-            covered: 0.0,
-            last: None,
-            step: 0.0,
-            held: Vec::new(),
-            all: 0.0,
-        }
+        Self { most, level: 0, number: 0, covered: 0.0, last: None, step: 0.0, held: Vec::new(), all: 0.0 }
     }
 
     /// Counts a row at `time` (s). If a window begins with it, see [`Self::is_full`]. `is_large` ends a window before its time.
@@ -173,19 +164,12 @@ mod tests {
             let ends = [0].into_iter().chain(held.iter().copied()).chain([all]);
             let ends: Vec<u64> = ends.collect();
             let longest = ends.windows(2).map(|pair| pair[1] - pair[0]).max();
-            assert!(
-                longest.is_some_and(|longest| longest <= 3 * all / count + 1),
-                "{seconds} s: {held:?}"
-            );
+            assert!(longest.is_some_and(|longest| longest <= 3 * all / count + 1), "{seconds} s: {held:?}");
             assert_eq!(held[0], 0);
             // They are not in step with a motion of a few windows.
             for period in 2..6 {
                 let most = (0..period).map(|phase| held.iter().filter(|&&number| number % period == phase).count());
-                assert!(
-                    most.max()
-                        .is_some_and(|most| (most as u64) * period < 2 * count + period),
-                    "{held:?}"
-                );
+                assert!(most.max().is_some_and(|most| (most as u64) * period < 2 * count + period), "{held:?}");
             }
         }
     }

@@ -18,9 +18,7 @@ pub fn unwrap(recording: &mut Recording) {
     let secondary = recording.q_secondary.iter_mut().map(Option::as_mut).enumerate();
     let secondary = secondary.filter_map(|(joint, q)| Some((joint, q?, Quantity::SecondaryPosition)));
     let primary = recording.q.iter_mut().enumerate();
-    let all = primary
-        .map(|(joint, q)| (joint, q, Quantity::Position))
-        .chain(secondary);
+    let all = primary.map(|(joint, q)| (joint, q, Quantity::Position)).chain(secondary);
     let mut warnings = Vec::new();
     for (joint, q, quantity) in all {
         let jumps = continuous(&recording.time, q, &recording.breaks);
@@ -40,9 +38,7 @@ pub fn unwrap(recording: &mut Recording) {
 /// steps are a turn plus or minus a motion as small as all other steps. Returns the rows after the jumps. Over a gap
 /// the shorter way is assumed, which makes no difference to a model.
 fn continuous(time: &[f64], q: &mut [f64], breaks: &[usize]) -> Vec<usize> {
-    let (low, high) = q
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    let (low, high) = q.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     if high - low > TAU + MARGIN || high - low < TAU - 2.0 * LARGEST_STEP {
         return Vec::new();
     }

@@ -39,23 +39,11 @@ fn check(recording: &Recording, seconds: f64) {
         recording.len()
     );
     let held = recording.len() as f64 / f64::from(RATE);
-    assert!(
-        (held + recording.left_out - seconds).abs() < 0.02 * seconds,
-        "{held} {}",
-        recording.left_out
-    );
+    assert!((held + recording.left_out - seconds).abs() < 0.02 * seconds, "{held} {}", recording.left_out);
     for (row, &t) in recording.time.iter().enumerate() {
         let [q, tau] = motion(t);
-        assert!(
-            (recording.q[0][row] - q).abs() < 1e-9,
-            "{t} s: {} {q}",
-            recording.q[0][row]
-        );
-        assert!(
-            (recording.tau[0][row] - tau).abs() < 2e-3,
-            "{t} s: {} {tau}",
-            recording.tau[0][row]
-        );
+        assert!((recording.q[0][row] - q).abs() < 1e-9, "{t} s: {} {q}", recording.q[0][row]);
+        assert!((recording.tau[0][row] - tau).abs() < 2e-3, "{t} s: {} {tau}", recording.tau[0][row]);
     }
 }
 
@@ -67,11 +55,7 @@ fn two_topics_of_a_long_bag_are_read_in_the_same_windows() {
         let all = RATE * seconds;
         let first: Vec<Message> = (0..all).map(|message| positions(time(message))).collect();
         let second: Vec<Message> = (0..all).map(|message| efforts(time(message) + 0.002)).collect();
-        let beside: Vec<Message> = first
-            .iter()
-            .zip(&second)
-            .flat_map(|(a, b)| [a.clone(), b.clone()])
-            .collect();
+        let beside: Vec<Message> = first.iter().zip(&second).flat_map(|(a, b)| [a.clone(), b.clone()]).collect();
         let after: Vec<Message> = first.iter().chain(&second).cloned().collect();
         let before: Vec<Message> = second.iter().chain(&first).cloned().collect();
         for messages in [beside, after, before] {
@@ -96,14 +80,9 @@ fn messages_a_little_out_of_order_are_used_and_counted() {
         let exchanged: Vec<Message> = (0..all).map(|at| state(time(message(at)), time(message(at)))).collect();
         for (expected, read) in windows(&in_order).into_iter().zip(windows(&exchanged)) {
             let (expected, mut read) = (expected.expect("it reads"), read.expect("it reads"));
-            let at = read
-                .warnings
-                .iter()
-                .position(|warning| matches!(warning, Warning::OutOfOrder { .. }));
+            let at = read.warnings.iter().position(|warning| matches!(warning, Warning::OutOfOrder { .. }));
             let warning = read.warnings.remove(at.expect("a warning"));
-            let Warning::OutOfOrder { messages, largest, .. } = warning else {
-                panic!("{warning}")
-            };
+            let Warning::OutOfOrder { messages, largest, .. } = warning else { panic!("{warning}") };
             assert_eq!(messages, u64::from((all - 7) / 37 + 1));
             assert!((largest - 1.0 / f64::from(RATE)).abs() < 1e-9, "{largest}");
             assert!(warning.to_string().contains("message 7 of the bag"), "{warning}");
@@ -128,10 +107,7 @@ fn a_clock_that_is_set_back_is_refused_with_its_place() {
                 error.contains(name) && error.contains(&format!("message {place} of joint states, in /joints")),
                 "{error}"
             );
-            assert!(
-                error.contains(&format!("time runs back by {:.3} s", by - 1.0 / f64::from(RATE))),
-                "{error}"
-            );
+            assert!(error.contains(&format!("time runs back by {:.3} s", by - 1.0 / f64::from(RATE))), "{error}");
         }
     }
 }
@@ -166,10 +142,7 @@ fn messages_with_a_wrong_stamp_are_left_out() {
                     assert!(first < 600 || lost == count as usize, "{case}: {lost}");
                     assert!(read.duration() < 60.0, "{case}: {}", read.duration());
                     let said = said(&read, |warning| matches!(warning, Warning::WrongStamps { .. }));
-                    assert!(
-                        said.len() == 1 && said[0].contains(&format!("{lost} message")),
-                        "{case}: {said:?}"
-                    );
+                    assert!(said.len() == 1 && said[0].contains(&format!("{lost} message")), "{case}: {said:?}");
                     for (row, &t) in read.time.iter().enumerate() {
                         let t = t + f64::from(read.epoch.map_or(0, |epoch| epoch - 1_700_000_000) as i32);
                         assert!((read.q[0][row] - motion(t)[0]).abs() < 1e-6, "{case}: {t} s");
@@ -190,31 +163,17 @@ fn a_simulation_that_starts_again_is_another_run() {
         // It may have run for a while before the bag begins.
         for begins in [0.05, 7.0] {
             let before = (0..first).map(|at| begins + time(at));
-            let messages: Vec<Message> = before
-                .chain((0..second).map(|at| 0.05 + time(at)))
-                .flat_map(of)
-                .collect();
+            let messages: Vec<Message> = before.chain((0..second).map(|at| 0.05 + time(at))).flat_map(of).collect();
             for read in windows(&messages) {
                 let read = read.expect("it reads");
-                let [at] = read.breaks[..] else {
-                    panic!("{:?}", read.breaks)
-                };
-                assert!(
-                    read.len() as u32 >= first + second - 5 && at as u32 >= first - 3,
-                    "{} {at}",
-                    read.len()
-                );
+                let [at] = read.breaks[..] else { panic!("{:?}", read.breaks) };
+                assert!(read.len() as u32 >= first + second - 5 && at as u32 >= first - 3, "{} {at}", read.len());
                 assert!((read.time[at] - read.time[at - 1] - 1.0).abs() < 0.1);
                 for (row, &t) in read.time.iter().enumerate() {
                     let stamp = match row < at {
                         true => t,
                         false => {
-                            0.05 + t - read.time[at]
-                                + if read.len() as u32 == first + second {
-                                    0.0
-                                } else {
-                                    time(1)
-                                }
+                            0.05 + t - read.time[at] + if read.len() as u32 == first + second { 0.0 } else { time(1) }
                         }
                     };
                     assert!((read.q[0][row] - motion(stamp)[0]).abs() < 1e-6, "{t} s");
@@ -231,16 +190,10 @@ fn a_simulation_that_starts_again_is_another_run() {
 #[test]
 fn a_clock_that_starts_again_alone_is_refused() {
     let restarted = |t: f64| if t < 40.0 { t } else { t - 40.0 };
-    let messages: Vec<Message> = (0..80 * RATE)
-        .map(time)
-        .flat_map(|t| [positions(restarted(t)), efforts(t)])
-        .collect();
+    let messages: Vec<Message> = (0..80 * RATE).map(time).flat_map(|t| [positions(restarted(t)), efforts(t)]).collect();
     for read in windows(&messages) {
         let error = read.expect_err("it is refused").to_string();
-        assert!(
-            error.contains("in /torques: time began again in other joint states"),
-            "{error}"
-        );
+        assert!(error.contains("in /torques: time began again in other joint states"), "{error}");
     }
 }
 
@@ -256,11 +209,7 @@ fn messages_without_a_stamp_are_not_mixed_with_others() {
         let messages: Vec<Message> = (0..all).map(message).collect();
         for read in windows(&messages) {
             let read = read.expect("it reads");
-            assert!(
-                read.duration() < 60.0 && read.len() as u32 == all - 20,
-                "{} s",
-                read.duration()
-            );
+            assert!(read.duration() < 60.0 && read.len() as u32 == all - 20, "{} s", read.duration());
             let said = said(&read, |warning| matches!(warning, Warning::LeftOut { .. }));
             let expected = if unstamped == 20 {
                 "20 messages without a stamp, or with the stamp 0,"
@@ -279,18 +228,12 @@ fn the_files_of_a_bag_may_have_any_names() {
     for order in [[2, 0, 1], [1, 2, 0], [2, 1, 0], [0, 2, 1]] {
         let folder = tempfile::tempdir().expect("a folder");
         for (name, part) in ["a", "b", "c"].iter().zip(order) {
-            let messages: Vec<Message> = (part * each..(part + 1) * each)
-                .map(|at| state(time(at), time(at)))
-                .collect();
+            let messages: Vec<Message> = (part * each..(part + 1) * each).map(|at| state(time(at), time(at))).collect();
             bag::write_mcap(&folder.path().join(format!("{name}.mcap")), &messages);
         }
         let recording = Recording::read_windows(folder.path(), None, 1000.0).expect("it reads");
         assert_eq!(recording.len() as u32, 3 * each);
-        assert!(
-            recording.breaks.is_empty() && recording.warnings.len() == 2,
-            "{:?}",
-            recording.warnings
-        );
+        assert!(recording.breaks.is_empty() && recording.warnings.len() == 2, "{:?}", recording.warnings);
     }
 }
 
@@ -301,39 +244,23 @@ fn a_file_without_joint_states_is_no_error_in_a_bag() {
     bag::write_mcap(&folder.path().join("a.mcap"), &[]);
     bag::write_database(&folder.path().join("b.db3"), &[]);
     let error = Recording::read(folder.path()).expect_err("it is refused").to_string();
-    assert!(
-        error.contains("there are no whole messages: was anything recorded, or was the file cut"),
-        "{error}"
-    );
+    assert!(error.contains("there are no whole messages: was anything recorded, or was the file cut"), "{error}");
     let messages: Vec<Message> = (0..60 * RATE).map(|at| state(time(at), time(at))).collect();
     bag::write_mcap(&folder.path().join("c.mcap"), &messages);
-    assert_eq!(
-        Recording::read(folder.path()).map(|recording| recording.len()).ok(),
-        Some(60 * RATE as usize)
-    );
+    assert_eq!(Recording::read(folder.path()).map(|recording| recording.len()).ok(), Some(60 * RATE as usize));
 }
 
 /// Files whose times overlap are no parts of one bag.
 #[test]
 fn files_with_the_same_times_are_refused() {
-    for (first, second) in [
-        ((0, 40), (20, 60)),
-        ((20, 60), (0, 40)),
-        ((0, 60), (20, 40)),
-        ((20, 40), (0, 60)),
-    ] {
+    for (first, second) in [((0, 40), (20, 60)), ((20, 60), (0, 40)), ((0, 60), (20, 40)), ((20, 40), (0, 60))] {
         let folder = tempfile::tempdir().expect("a folder");
         for (name, (from, to)) in [("a.mcap", first), ("b.mcap", second)] {
             let messages: Vec<Message> = (from * RATE..to * RATE).map(|at| state(time(at), time(at))).collect();
             bag::write_mcap(&folder.path().join(name), &messages);
         }
-        let error = Recording::read_windows(folder.path(), None, 1000.0)
-            .expect_err("it is refused")
-            .to_string();
-        assert!(
-            error.contains("b.mcap") && error.contains("time runs back by"),
-            "{error}"
-        );
+        let error = Recording::read_windows(folder.path(), None, 1000.0).expect_err("it is refused").to_string();
+        assert!(error.contains("b.mcap") && error.contains("time runs back by"), "{error}");
     }
 }
 
@@ -357,17 +284,10 @@ fn the_files_of_a_bag_are_read_by_their_number() {
     let folder = tempfile::tempdir().expect("a folder");
     let each = 50 * RATE;
     for part in 0..12 {
-        let messages: Vec<Message> = (part * each..(part + 1) * each)
-            .map(|at| state(time(at), time(at)))
-            .collect();
+        let messages: Vec<Message> = (part * each..(part + 1) * each).map(|at| state(time(at), time(at))).collect();
         bag::write_database(&folder.path().join(format!("day.one_{part}.db3")), &messages);
     }
     let recording = Recording::read_windows(folder.path(), None, SECONDS).expect("it reads");
     check(&recording, 600.0);
-    assert!(
-        !recording
-            .warnings
-            .iter()
-            .any(|warning| matches!(warning, Warning::OutOfOrder { .. }))
-    );
+    assert!(!recording.warnings.iter().any(|warning| matches!(warning, Warning::OutOfOrder { .. })));
 }

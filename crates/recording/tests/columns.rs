@@ -4,9 +4,7 @@ use recording::{Column, Recording};
 
 /// 200 rows of one joint, with a row written twice.
 fn columns() -> Vec<(String, Column)> {
-    let time: Vec<f64> = (0..200)
-        .map(|k| 0.01 * f64::from(if k == 50 { 49 } else { k }))
-        .collect();
+    let time: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(if k == 50 { 49 } else { k })).collect();
     let q: Vec<f64> = time.iter().map(|t| t.sin()).collect();
     let tau: Vec<f64> = time.iter().map(|t| 3.0 * t.cos()).collect();
     vec![
@@ -37,28 +35,17 @@ fn the_columns_are_those_of_the_same_csv() {
     assert!(read.len() < 200 && !taken.warnings.is_empty());
     assert_eq!(read.warnings.len(), taken.warnings.len());
     // Places apart, which are lines in a file and rows in memory.
-    let without = |recording: Recording| Recording {
-        warnings: Vec::new(),
-        origin: None,
-        ..recording
-    };
+    let without = |recording: Recording| Recording { warnings: Vec::new(), origin: None, ..recording };
     assert_eq!(without(read), without(taken));
 }
 
 #[test]
 fn what_is_wrong_with_columns_has_their_name() {
-    let refusal = |columns| {
-        Recording::of_columns("given", columns, None)
-            .expect_err("it is refused")
-            .to_string()
-    };
+    let refusal = |columns| Recording::of_columns("given", columns, None).expect_err("it is refused").to_string();
     let mut short = columns();
     short[2].1 = Column::Numbers(vec![0.0; 20]);
     let message = refusal(short);
-    assert!(
-        message.contains("given") && message.contains("\"tau_a\" has 20 values"),
-        "{message}"
-    );
+    assert!(message.contains("given") && message.contains("\"tau_a\" has 20 values"), "{message}");
     let mut missing = columns();
     missing[2].1 = Column::Numbers([vec![1.0; 120], vec![f64::NAN], vec![1.0; 79]].concat());
     let message = refusal(missing);

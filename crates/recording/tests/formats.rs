@@ -24,16 +24,8 @@ fn refusal(name: &str) -> String {
 /// Position, velocity and torque of a joint at a time after the start.
 fn motion(joint: usize, t: f64) -> [f64; 3] {
     [
-        [
-            0.8 * (2.0 * t).sin(),
-            1.6 * (2.0 * t).cos(),
-            5.0 * (3.0 * t).cos() + 1.0,
-        ],
-        [
-            0.3 * (5.0 * t).cos() - 1.0,
-            -1.5 * (5.0 * t).sin(),
-            -2.0 * (4.0 * t).sin(),
-        ],
+        [0.8 * (2.0 * t).sin(), 1.6 * (2.0 * t).cos(), 5.0 * (3.0 * t).cos() + 1.0],
+        [0.3 * (5.0 * t).cos() - 1.0, -1.5 * (5.0 * t).sin(), -2.0 * (4.0 * t).sin()],
     ][joint]
 }
 
@@ -49,10 +41,7 @@ fn check(recording: &Recording, rows: usize, tolerance: f64) {
             assert!((stamp - t).abs() < 1e-6, "row {row}: {stamp} s");
             let found = [recording.q[index][row], qd[index][row], recording.tau[index][row]];
             for (found, expected) in found.iter().zip(motion(joint, t)) {
-                assert!(
-                    (found - expected).abs() <= tolerance,
-                    "{name}, row {row}: {found} {expected}"
-                );
+                assert!((found - expected).abs() <= tolerance, "{name}, row {row}: {found} {expected}");
             }
         }
     }
@@ -82,20 +71,12 @@ fn text_of_known_systems_needs_no_map() {
         assert_eq!(note.contains("URDF's order"), joints[0] == "0", "{note}");
     }
     let currents = refusal("ur_rtde_current.csv");
-    assert!(
-        currents.contains("those of UR RTDE") && currents.contains("tau_scale"),
-        "{currents}"
-    );
+    assert!(currents.contains("those of UR RTDE") && currents.contains("tau_scale"), "{currents}");
 }
 
 #[test]
 fn stamps_of_a_calendar_are_read_to_the_nanosecond() {
-    for name in [
-        "sec_nanosec.csv",
-        "iso8601.csv",
-        "rostopic_echo.csv",
-        "ros2_topic_echo.csv",
-    ] {
+    for name in ["sec_nanosec.csv", "iso8601.csv", "rostopic_echo.csv", "ros2_topic_echo.csv"] {
         let recording = read(name);
         check(&recording, 60, 1e-15);
         for (row, time) in recording.time.iter().enumerate() {
@@ -115,23 +96,13 @@ fn compressed_files_are_read_as_they_are() {
 
 #[test]
 fn joint_states_of_bags_are_read_whatever_the_storage() {
-    for name in [
-        "joint_states.mcap",
-        "bag_sqlite",
-        "bag_sqlite/bag_sqlite.db3",
-        "bag_messages",
-        "bag_file",
-        "bag_mcap",
-    ] {
+    for name in ["joint_states.mcap", "bag_sqlite", "bag_sqlite/bag_sqlite.db3", "bag_messages", "bag_file", "bag_mcap"]
+    {
         let recording = read(name);
         check(&recording, 60, 0.0);
         assert_eq!(recording.joints, ["shoulder", "elbow"], "{name}");
         let left_out = |warning: &Warning| matches!(warning, Warning::JointLeftOut { joint, .. } if joint == "finger");
-        assert!(
-            recording.warnings.iter().any(left_out),
-            "{name}: {:?}",
-            recording.warnings
-        );
+        assert!(recording.warnings.iter().any(left_out), "{name}: {:?}", recording.warnings);
         assert!(system(&recording).is_some_and(|note| note.contains("/joint_states/")));
     }
     // A recorder that is killed leaves an incomplete file.
@@ -165,34 +136,18 @@ fn topics_are_joined_by_time_or_chosen() {
             assert!((joined.tau[joint][row] - tau).abs() < 1e-3);
         }
     }
-    let found = joined.warnings.iter().any(|warning| {
-        matches!(
-            warning,
-            Warning::Joined {
-                interpolated: 59,
-                left_out: 1,
-                ..
-            }
-        )
-    });
+    let found =
+        joined.warnings.iter().any(|warning| matches!(warning, Warning::Joined { interpolated: 59, left_out: 1, .. }));
     assert!(found, "{:?}", joined.warnings);
     let ambiguous = refusal("ambiguous.mcap");
     assert!(
         ambiguous.contains("\"shoulder\" is in the topics /a, /b") && ambiguous.contains("topics = [\"/a\"]"),
         "{ambiguous}"
     );
-    check(
-        &read_with("ambiguous.mcap", "topics = [\"/b\"]").expect("it is chosen"),
-        60,
-        0.0,
-    );
+    check(&read_with("ambiguous.mcap", "topics = [\"/b\"]").expect("it is chosen"), 60, 0.0);
     let columns = "[time]\ncolumn = \"__time\"\n[joints.elbow]\nq = \"/a/elbow/position\"\nqd = \"/a/elbow/velocity\"\n\
                    tau = \"/b/elbow/effort\"\n";
-    check(
-        &read_with("ambiguous.mcap", columns).expect("its columns are named"),
-        60,
-        0.0,
-    );
+    check(&read_with("ambiguous.mcap", columns).expect("its columns are named"), 60, 0.0);
     let missing = read_with("ambiguous.mcap", "topics = [\"/c\"]").expect_err("there is no such topic");
     assert!(
         missing.contains("in /c; its topics are /a (") && missing.contains("/b (") && missing.contains("/wanted ("),
@@ -231,10 +186,7 @@ fn episodes_of_lerobot_are_runs() {
     assert!(recording.warnings.iter().any(found), "{:?}", recording.warnings);
     assert_eq!(read("lerobot_one_episode.parquet").len(), 60);
     let lacking = refusal("lerobot_no_torques.parquet");
-    assert!(
-        lacking.contains("those of LeRobot") && lacking.contains("observation.effort"),
-        "{lacking}"
-    );
+    assert!(lacking.contains("those of LeRobot") && lacking.contains("observation.effort"), "{lacking}");
 }
 
 #[test]
@@ -254,30 +206,15 @@ fn arrays_of_numpy_and_matlab_are_read() {
     check(&read_with("arrays.npz", map).expect("it fits"), 60, 0.0);
     // A header of version 7.3 also ends in the mark of MATLAB's byte order, as those of version 5 do.
     let newer = refusal("new.mat");
-    assert!(
-        newer.contains("version 7.3 (HDF5) is not read; save it again from MATLAB: save("),
-        "{newer}"
-    );
-    assert!(
-        newer.contains("\"-v7\")") && newer.contains("scipy.io.savemat"),
-        "{newer}"
-    );
+    assert!(newer.contains("version 7.3 (HDF5) is not read; save it again from MATLAB: save("), "{newer}");
+    assert!(newer.contains("\"-v7\")") && newer.contains("scipy.io.savemat"), "{newer}");
     check(&read("half.npz"), 60, 1e-3);
     let complex = refusal("complex.npz");
-    assert!(
-        complex.contains("q has the type <c16") && complex.contains("q.astype(float)"),
-        "{complex}"
-    );
+    assert!(complex.contains("q has the type <c16") && complex.contains("q.astype(float)"), "{complex}");
     let old = refusal("version_4.mat");
-    assert!(
-        old.contains("version 4 is not read") && old.contains("scipy.io.savemat"),
-        "{old}"
-    );
+    assert!(old.contains("version 4 is not read") && old.contains("scipy.io.savemat"), "{old}");
     let short = refusal("short.npz");
-    assert!(
-        short.contains("q has 57 rows and 2 columns, and the longest vector has 60 values"),
-        "{short}"
-    );
+    assert!(short.contains("q has 57 rows and 2 columns, and the longest vector has 60 values"), "{short}");
 }
 
 /// What others write is named, with the way out.
@@ -298,10 +235,7 @@ fn formats_that_are_not_read_are_named() {
     for (content, name, remedy) in cases {
         std::fs::write(&path, content).expect("it writes");
         let error = Recording::read(&path).expect_err("it is refused").to_string();
-        assert!(
-            error.contains(&format!("run: {name}: ")) && error.contains(remedy),
-            "{error}"
-        );
+        assert!(error.contains(&format!("run: {name}: ")) && error.contains(remedy), "{error}");
     }
 }
 
@@ -354,9 +288,6 @@ fn cut_and_damaged_files_are_read_or_refused() {
         }
         assert!(refused > 20, "{name}: {refused}");
         // The limit of the expanded file, and of its table.
-        assert!(
-            largest < 2 * ((64 << 20) + 100 * whole.len() as u64),
-            "{name}: {largest} bytes"
-        );
+        assert!(largest < 2 * ((64 << 20) + 100 * whole.len() as u64), "{name}: {largest} bytes");
     }
 }

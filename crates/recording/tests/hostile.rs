@@ -29,17 +29,13 @@ fn bombs_are_refused_before_they_fill_the_memory() {
     let rows = b"0.1,1,2\n";
     let gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     let zstandard = zstd::stream::write::Encoder::new(Vec::new(), 3).expect("an encoder");
-    for packed in [
-        bomb(gzip, rows).finish().expect("it is packed"),
-        bomb(zstandard, rows).finish().expect("it is packed"),
-    ] {
+    for packed in
+        [bomb(gzip, rows).finish().expect("it is packed"), bomb(zstandard, rows).finish().expect("it is packed")]
+    {
         assert!(packed.len() < 2_000_000, "{}", packed.len());
         std::fs::write(&path, packed).expect("it is written");
         let (error, most) = refusal(&path);
-        assert!(
-            error.contains("100 times its size") && most < 10_000_000,
-            "{most} bytes: {error}"
-        );
+        assert!(error.contains("100 times its size") && most < 10_000_000, "{most} bytes: {error}");
     }
     // Version 5 of MATLAB's files: a header, and a compressed element.
     let zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
@@ -51,10 +47,7 @@ fn bombs_are_refused_before_they_fill_the_memory() {
     mat.extend(packed);
     std::fs::write(&path, mat).expect("it is written");
     let (error, most) = refusal(&path);
-    assert!(
-        error.contains("hundred times") && most < 300_000_000,
-        "{most} bytes: {error}"
-    );
+    assert!(error.contains("hundred times") && most < 300_000_000, "{most} bytes: {error}");
 }
 
 /// A database whose tables are made by `statements`.
@@ -82,18 +75,12 @@ fn tables_that_are_programs_are_refused() {
         ),
         format!("{TOPICS} {messages}, data BLOB AS(zeroblob(900000000))); INSERT INTO messages VALUES (1, 1);"),
         format!("{TOPICS} {messages}, data BLOB);")
-            .replace(
-                "serialization_format TEXT",
-                "serialization_format TEXT AS(hex(zeroblob(400000000)))",
-            )
+            .replace("serialization_format TEXT", "serialization_format TEXT AS(hex(zeroblob(400000000)))")
             .replace(", 'cdr')", ")"),
     ] {
         database(&path, &statements);
         let (error, most) = refusal(&path);
-        assert!(
-            error.contains("missing or computed") && most < 1_000_000,
-            "{most} bytes: {error}"
-        );
+        assert!(error.contains("missing or computed") && most < 1_000_000, "{most} bytes: {error}");
     }
     database(&path, &format!("{TOPICS} {messages}, data BLOB);"));
     assert!(!refusal(&path).0.contains("computed"));
@@ -109,10 +96,7 @@ fn a_bag_reads_no_file_elsewhere() {
     std::fs::create_dir(&bag).expect("a folder");
     std::os::unix::fs::symlink(&elsewhere, bag.join("bag_0.mcap")).expect("a link");
     let (error, _) = refusal(&bag);
-    assert!(
-        error.contains("bag_0.mcap is a link that leads out of the bag's folder"),
-        "{error}"
-    );
+    assert!(error.contains("bag_0.mcap is a link that leads out of the bag's folder"), "{error}");
     // A link to the bag itself was made by the user.
     std::fs::remove_file(bag.join("bag_0.mcap")).expect("it goes");
     std::fs::rename(&elsewhere, bag.join("bag_0.mcap")).expect("it moves");

@@ -5,9 +5,7 @@ use recording::{Recording, Warning};
 /// `seconds` at 20 Hz of two joints, with a gap of a minute after the first quarter.
 fn long(seconds: usize) -> Recording {
     let rows = 20 * seconds;
-    let time: Vec<f64> = (0..rows)
-        .map(|row| row as f64 * 0.05 + if 4 * row < rows { 0.0 } else { 60.0 })
-        .collect();
+    let time: Vec<f64> = (0..rows).map(|row| row as f64 * 0.05 + if 4 * row < rows { 0.0 } else { 60.0 }).collect();
     let signal = |pace: f64| -> Vec<f64> { time.iter().map(|t| (pace * t).sin()).collect() };
     Recording {
         joints: vec!["a".into(), "b".into()],
@@ -32,19 +30,13 @@ fn of_a_long_file_windows_are_held() {
     for (row, time) in windows.time.iter().enumerate() {
         let at = whole.time.partition_point(|other| other < time);
         assert_eq!(whole.time[at], *time);
-        assert_eq!(
-            (whole.q[0][at], whole.tau[1][at]),
-            (windows.q[0][row], windows.tau[1][row])
-        );
+        assert_eq!((whole.q[0][at], whole.tau[1][at]), (windows.q[0][row], windows.tau[1][row]));
     }
     let (regular, warnings) = windows.regular().expect("it has a clock");
     assert!((regular.period - 0.05).abs() < 1e-9 && regular.has_clock);
     assert!(regular.segments.len() > 5, "{:?}", regular.segments);
     assert_eq!(regular.left_out, windows.left_out);
-    assert!(
-        !warnings.iter().any(|warning| matches!(warning, Warning::Gap { .. })),
-        "{warnings:?}"
-    );
+    assert!(!warnings.iter().any(|warning| matches!(warning, Warning::Gap { .. })), "{warnings:?}");
 }
 
 #[test]

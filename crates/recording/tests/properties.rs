@@ -24,12 +24,7 @@ fn taken(bytes: &[u8], map: Option<&str>) -> Result<(Recording, RegularRecording
 
 /// A recording without the properties of its file: the places of its warnings, and the columns.
 fn content(recording: &Recording) -> Recording {
-    Recording {
-        warnings: Vec::new(),
-        epoch: None,
-        origin: None,
-        ..recording.clone()
-    }
+    Recording { warnings: Vec::new(), epoch: None, origin: None, ..recording.clone() }
 }
 
 /// Fails unless both have the same bits, or both are refused.
@@ -246,13 +241,8 @@ fn most_tables_are_read_and_some_are_refused() {
         let draw = |runner: &mut proptest::test_runner::TestRunner| -> Table {
             tables(bad).new_tree(runner).expect("it draws").current()
         };
-        (0..100)
-            .filter(|_| taken(&draw(&mut runner).csv(), None).is_ok())
-            .count()
+        (0..100).filter(|_| taken(&draw(&mut runner).csv(), None).is_ok()).count()
     };
     let (clean, spoiled) = (count(false), count(true));
-    assert!(
-        clean >= 95 && (40..=90).contains(&spoiled),
-        "{clean} and {spoiled} of 100"
-    );
+    assert!(clean >= 95 && (40..=90).contains(&spoiled), "{clean} and {spoiled} of 100");
 }

@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use recording::{Quality, Recording, RegularRecording, Warning};
 
 fn shared(folder: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared")
-        .join(folder)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(folder)
 }
 
 fn csv_files(folder: &Path) -> Vec<PathBuf> {
@@ -26,9 +24,7 @@ fn csv_files(folder: &Path) -> Vec<PathBuf> {
 
 fn load(path: &Path) -> (Recording, RegularRecording, Vec<Warning>) {
     let recording = Recording::read(path).unwrap_or_else(|error| panic!("{error}"));
-    let (regular, found) = recording
-        .regular()
-        .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let (regular, found) = recording.regular().unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let warnings = [recording.warnings.clone(), found].concat();
     (recording, regular, warnings)
 }
@@ -36,9 +32,7 @@ fn load(path: &Path) -> (Recording, RegularRecording, Vec<Warning>) {
 /// Each sample's distance from the cubic through its four neighbours, over its noise.
 fn roughest(values: &[f64], noise: f64) -> f64 {
     let cubic = |k: usize| (4.0 * (values[k - 1] + values[k + 1]) - values[k - 2] - values[k + 2]) / 6.0;
-    (2..values.len() - 2)
-        .map(|k| (values[k] - cubic(k)).abs() / noise)
-        .fold(0.0, f64::max)
+    (2..values.len() - 2).map(|k| (values[k] - cubic(k)).abs() / noise).fold(0.0, f64::max)
 }
 
 /// The stamps of these cases jitter by a tenth of the period about a clock of whole hertz that ticks at 0 s.
@@ -54,11 +48,7 @@ fn hard_cases_land_on_their_ticks() {
         let rate = (1.0 / regular.period).round();
         assert_eq!(regular.period, 1.0 / rate, "{}", path.display());
         let off = (regular.start * rate).round() / rate - regular.start;
-        assert!(
-            off.abs() < 0.02 * regular.period,
-            "{}: phase off by {off} s",
-            path.display()
-        );
+        assert!(off.abs() < 0.02 * regular.period, "{}: phase off by {off} s", path.display());
         // A row's own tick by its stamp alone is right up to deviations of five standard deviations.
         let present = (0..regular.len()).filter(|&tick| regular.present[tick]);
         for (stamp, tick) in recording.time.iter().zip(present) {
@@ -94,12 +84,7 @@ fn real_recordings_are_read_and_measured() {
         }
         let quality = Quality::of(&recording, &regular);
         assert!(quality.joints.iter().any(|joint| joint.moves), "{}", path.display());
-        println!(
-            "{}: {} rows, {} warnings",
-            path.display(),
-            recording.len(),
-            warnings.len()
-        );
+        println!("{}: {} rows, {} warnings", path.display(), recording.len(), warnings.len());
     }
     // Three runs one after the other, each with its own clock.
     let (recording, ..) = load(&folder.join("iiwa14/joints_3_to_7.csv"));

@@ -15,10 +15,8 @@ pub fn text(finding: &Finding) -> String {
     };
     // The same effect on every joint is one alternative of an effect of the whole arm, not one on each joint.
     let common = finding.as_effect.spec().same_on_all_joints;
-    let (of_all, others): (Vec<_>, Vec<_>) = finding
-        .confusable_with
-        .iter()
-        .partition(|other| Some(other.effect) == common);
+    let (of_all, others): (Vec<_>, Vec<_>) =
+        finding.confusable_with.iter().partition(|other| Some(other.effect) == common);
     let joints: Vec<&str> = of_all.iter().filter_map(|other| other.joint.as_deref()).collect();
     let together = match joints[..] {
         [_, _, ..] => {
@@ -30,12 +28,7 @@ pub fn text(finding: &Finding) -> String {
     let pairs = finding.confusable_with_pairs.iter();
     let pairs = pairs.map(|[first, second]| format!("{} together with {}", one(first), one(second)));
     let alone = others.into_iter().map(one);
-    together
-        .into_iter()
-        .chain(alone)
-        .chain(pairs)
-        .collect::<Vec<_>>()
-        .join(", or ")
+    together.into_iter().chain(alone).chain(pairs).collect::<Vec<_>>().join(", or ")
 }
 
 /// A finding's alternatives, with the experiment that distinguishes them from it.
@@ -62,10 +55,7 @@ mod tests {
     /// A common factor of all masses equals one of all torques; the torque constant of one joint does not.
     #[test]
     fn one_effect_on_every_joint_is_one_alternative() {
-        let on = |effect, joint: &str| Confusable {
-            effect,
-            joint: Some(joint.to_owned()),
-        };
+        let on = |effect, joint: &str| Confusable { effect, joint: Some(joint.to_owned()) };
         let mut finding = Finding::of(Effect::of(&InertialScale));
         finding.confusable_with = vec![on("torque_scale", "a")];
         assert_eq!(text(&finding), "torque scale on a");

@@ -37,11 +37,7 @@ pub enum Block {
 
 /// A table.
 pub fn table(head: &[&str], words: usize, rows: Vec<Vec<String>>) -> Block {
-    Block::Table {
-        head: head.iter().map(|&word| word.to_owned()).collect(),
-        rows,
-        words,
-    }
+    Block::Table { head: head.iter().map(|&word| word.to_owned()).collect(), rows, words }
 }
 
 /// A paragraph.

@@ -89,9 +89,7 @@ impl Svg {
 
     /// A text at a position; `anchor` is start, middle or end.
     pub fn text(&mut self, [x, y]: [f64; 2], class: &str, anchor: &str, words: &str) {
-        self.raw(format_args!(
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\" text-anchor=\"{anchor}\">"
-        ));
+        self.raw(format_args!("<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"{class}\" text-anchor=\"{anchor}\">"));
         let _ = Escaper::new(&mut self.text).write_str(words);
         self.text.push_str("</text>");
     }
@@ -107,9 +105,7 @@ impl Svg {
 
     /// A straight line.
     pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], class: &str) {
-        self.raw(format_args!(
-            "<path class=\"{class}\" d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\"/>"
-        ));
+        self.raw(format_args!("<path class=\"{class}\" d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}\"/>"));
     }
 
     /// A box.
@@ -121,9 +117,7 @@ impl Svg {
 
     /// A circle.
     pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str) {
-        self.raw(format_args!(
-            "<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"
-        ));
+        self.raw(format_args!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\"/>"));
     }
 
     /// Runs of points, each a line of its own.
@@ -159,12 +153,7 @@ impl Svg {
 
     /// The number of a tick at `place` below the horizontal axis at `bottom`.
     pub fn tick_below(&mut self, place: f64, bottom: f64, tick: f64, decimals: usize) {
-        self.text(
-            [place, bottom + 17.0],
-            "tick",
-            "middle",
-            &numbers::fixed(tick, decimals),
-        );
+        self.text([place, bottom + 17.0], "tick", "middle", &numbers::fixed(tick, decimals));
     }
 
     /// The horizontal lines of a vertical axis, with their numbers and the unit.
@@ -241,10 +230,7 @@ mod tests {
         let (ticks, decimals) = Scale::new([-0.31, 0.74], [0.0, 1.0]).ticks(5);
         assert_eq!((ticks.len(), decimals), (2, 1), "{ticks:?}");
         let (ticks, decimals) = Scale::new([-0.31, 0.74], [0.0, 1.0]).ticks(6);
-        assert!(
-            (ticks[0] + 0.2).abs() < 1e-9 && ticks.len() == 5 && decimals == 1,
-            "{ticks:?}"
-        );
+        assert!((ticks[0] + 0.2).abs() < 1e-9 && ticks.len() == 5 && decimals == 1, "{ticks:?}");
         let (ticks, decimals) = Scale::new([0.0, 0.0], [0.0, 1.0]).ticks(4);
         assert!(ticks.len() > 2 && decimals <= 1, "{ticks:?}");
     }

@@ -12,11 +12,8 @@ use crate::{alternatives, doubts, markdown, next_words, not_diagnosed, numbers, 
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
 pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
-    let made = format!(
-        "Made by testbed {} (`testbed diagnose`), schema `{}`.",
-        env!("CARGO_PKG_VERSION"),
-        report.schema
-    );
+    let made =
+        format!("Made by testbed {} (`testbed diagnose`), schema `{}`.", env!("CARGO_PKG_VERSION"), report.schema);
     markdown(&blocks(report, arm), &made)
 }
 
@@ -25,9 +22,7 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     if let Some(changed) = words::changed(report) {
         blocks.push(text(changed));
     }
-    let sentences = words::different_load(report)
-        .into_iter()
-        .chain(words::torque_lag(report));
+    let sentences = words::different_load(report).into_iter().chain(words::torque_lag(report));
     blocks.extend(sentences.map(text));
     blocks.push(text(format!("**{}**", words::verdict(report))));
     blocks.extend(doubted(&report.doubts, Certainty::Certain, report));
@@ -135,11 +130,7 @@ fn findings(report: &Report) -> Vec<Block> {
              and is repeated for each of its findings.",
         ),
         Block::Heading("All parameters, in SI units at the joint"),
-        table(
-            &["joint", "effect", "parameter", "unit", "value", "from", "to (95 %)"],
-            4,
-            parameters.collect(),
-        ),
+        table(&["joint", "effect", "parameter", "unit", "value", "from", "to (95 %)"], 4, parameters.collect()),
     ]
 }
 
@@ -219,11 +210,7 @@ fn rollout(report: &Report, arm: &Arm) -> Vec<Block> {
     });
     vec![
         Block::Heading("Simulated motion compared with the recording"),
-        table(
-            &["joint", "nominal, RMS position error", "with effects"],
-            1,
-            rows.collect(),
-        ),
+        table(&["joint", "nominal, RMS position error", "with effects"], 1, rows.collect()),
     ]
 }
 
@@ -237,10 +224,7 @@ fn not_testable(report: &Report, arm: &Arm) -> Vec<Block> {
     }
     let rows = groups.values().map(|entries| {
         let sizes = entries.iter().map(|entry| {
-            let joint = arm
-                .joints()
-                .iter()
-                .find(|joint| Some(&joint.name) == entry.joint.as_ref());
+            let joint = arm.joints().iter().find(|joint| Some(&joint.name) == entry.joint.as_ref());
             let kind = joint.map_or(JointKind::Revolute, |joint| joint.kind);
             let place = place(entry.joint.as_deref());
             match words::detectable_sizes(entry, kind).as_str() {
@@ -268,24 +252,14 @@ fn next_steps(report: &Report) -> Vec<Block> {
     }
     let mut blocks = vec![Block::Heading("What to do next")];
     blocks.extend(steps.iter().map(|step| text(format!("- {step}."))));
-    if let Some(next) = report
-        .next_experiment
-        .as_ref()
-        .filter(|next| !next.separates.is_empty())
-    {
+    if let Some(next) = report.next_experiment.as_ref().filter(|next| !next.separates.is_empty()) {
         let row = |pair: &diagnosis::Separation| {
             let [before, after, needed] = [pair.before, pair.after, pair.needed].map(numbers::short);
             let [finding, rival] = [&pair.finding, &pair.rival].map(next_words::name);
             vec![finding, rival, before, after, needed]
         };
         blocks.push(table(
-            &[
-                "finding",
-                "alternative",
-                "evidence now (nats)",
-                "with the motion",
-                "needed",
-            ],
+            &["finding", "alternative", "evidence now (nats)", "with the motion", "needed"],
             2,
             next.separates.iter().map(row).collect(),
         ));

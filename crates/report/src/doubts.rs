@@ -48,10 +48,7 @@ pub fn groups<'a>(doubts: &'a [Doubt], certainty: Certainty, report: &Report) ->
         }
     }
     let all = report.recordings.train.len() + report.recordings.held_out.len();
-    groups
-        .into_iter()
-        .map(|doubts| group(&doubts, certainty, all))
-        .collect()
+    groups.into_iter().map(|doubts| group(&doubts, certainty, all)).collect()
 }
 
 /// The group of `doubts` (at least one); `all` is the number of recordings.
@@ -67,10 +64,7 @@ fn group<'a>(doubts: &[&'a Doubt], certainty: Certainty, all: usize) -> Group<'a
     };
     let own = doubts.iter().filter(|doubt| doubt.recording == *first);
     let text = |doubt: &&Doubt| {
-        let joint = doubt
-            .joint
-            .as_ref()
-            .map_or_else(String::new, |joint| format!("{joint}: "));
+        let joint = doubt.joint.as_ref().map_or_else(String::new, |joint| format!("{joint}: "));
         format!("{first}{others}: {joint}{}", doubt.text)
     };
     Group {

@@ -13,18 +13,9 @@ const LARGER_BY: f64 = 0.02;
 /// corrections where the error is clearly larger without them.
 pub fn notes(report: &Report) -> Vec<String> {
     let mut notes = Vec::new();
-    let between = report
-        .findings
-        .iter()
-        .filter(|finding| finding.sensor.is_some() && finding.acts_today());
+    let between = report.findings.iter().filter(|finding| finding.sensor.is_some() && finding.acts_today());
     let between: Vec<String> = between
-        .map(|finding| {
-            format!(
-                "{} of {}",
-                words::effect(finding),
-                words::joint(finding.joint.as_deref())
-            )
-        })
+        .map(|finding| format!("{} of {}", words::effect(finding), words::joint(finding.joint.as_deref())))
         .collect();
     if !between.is_empty() {
         notes.push(format!(
@@ -36,10 +27,7 @@ pub fn notes(report: &Report) -> Vec<String> {
         let [table, exported] = [fit.held_out_nrmse_augmented?, fit.held_out_nrmse_exported?];
         (exported > LARGER_WITHOUT * table && exported > table + LARGER_BY).then_some([table, exported])
     };
-    let joints = report
-        .fit
-        .iter()
-        .filter_map(|(name, fit)| Some((name, is_larger(fit)?)));
+    let joints = report.fit.iter().filter_map(|(name, fit)| Some((name, is_larger(fit)?)));
     let larger: Vec<String> = joints
         .map(|(name, errors)| {
             let [table, exported] = errors.map(numbers::nrmse);

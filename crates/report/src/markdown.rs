@@ -19,9 +19,8 @@ pub fn markdown(blocks: &[Block], made: &str) -> String {
                     continue;
                 }
                 text.push_str(&line(head));
-                let rule: Vec<String> = (0..head.len())
-                    .map(|column| if column < *words { "---" } else { "--:" }.to_owned())
-                    .collect();
+                let rule: Vec<String> =
+                    (0..head.len()).map(|column| if column < *words { "---" } else { "--:" }.to_owned()).collect();
                 text.push_str(&line(&rule));
                 for row in rows {
                     text.push_str(&line(row));
@@ -35,10 +34,7 @@ pub fn markdown(blocks: &[Block], made: &str) -> String {
 }
 
 fn line(cells: &[String]) -> String {
-    let cells: Vec<String> = cells
-        .iter()
-        .map(|cell| without_tags(cell).replace('|', "\\|"))
-        .collect();
+    let cells: Vec<String> = cells.iter().map(|cell| without_tags(cell).replace('|', "\\|")).collect();
     format!("| {} |\n", cells.join(" | "))
 }
 
@@ -71,10 +67,7 @@ mod tests {
 
     #[test]
     fn tags_are_escaped() {
-        assert_eq!(
-            without_tags("p < 0.05, `a<b>` <b>x</b>"),
-            "p < 0.05, `a<b>` &lt;b>x&lt;/b>"
-        );
+        assert_eq!(without_tags("p < 0.05, `a<b>` <b>x</b>"), "p < 0.05, `a<b>` &lt;b>x&lt;/b>");
         // A single backtick does not begin a code span.
         assert_eq!(without_tags("a`<i>"), "a`&lt;i>");
     }

@@ -16,10 +16,9 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
             "a motion of {duration:.0} s within the joint limits should distinguish {}",
             listed(&distinguished)
         )),
-        Some(duration) => list.push(format!(
-            "a motion of {duration:.0} s within the joint limits makes {} testable",
-            shown(next)
-        )),
+        Some(duration) => {
+            list.push(format!("a motion of {duration:.0} s within the joint limits makes {} testable", shown(next)))
+        }
         None => list.push("no motion within the joint limits would give more information".to_owned()),
     }
     let mut advice: Vec<&str> = Vec::new();
@@ -33,10 +32,7 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
         None => "no motion within the joint limits distinguishes",
     };
     for instead in advice {
-        let same = next
-            .not_separated
-            .iter()
-            .filter(|undecided| undecided.instead == instead);
+        let same = next.not_separated.iter().filter(|undecided| undecided.instead == instead);
         let pairs_left = pairs(same.map(|undecided| (&undecided.finding, &undecided.rival)));
         list.push(format!("{no_motion} {}; instead, {instead}", listed(&pairs_left)));
     }
@@ -103,10 +99,7 @@ mod tests {
 
     #[test]
     fn what_a_motion_distinguishes_is_stated_once() {
-        let on = |effect: &'static str, joint: Option<&str>| Confusable {
-            effect,
-            joint: joint.map(str::to_owned),
-        };
+        let on = |effect: &'static str, joint: Option<&str>| Confusable { effect, joint: joint.map(str::to_owned) };
         let undecided = |joint: &str| NotSeparated {
             finding: on("inertial_scale", None),
             rival: on("torque_scale", Some(joint)),
@@ -116,10 +109,7 @@ mod tests {
             because: String::new(),
             instead: "weigh it".into(),
         };
-        let of_arm = NotSeparated {
-            rival: on("torque_scale", None),
-            ..undecided("a")
-        };
+        let of_arm = NotSeparated { rival: on("torque_scale", None), ..undecided("a") };
         let next = NextExperiment {
             duration: Some(25.0),
             separates: vec![Separation {
@@ -135,10 +125,7 @@ mod tests {
         };
         let said = sentences(&next);
         assert_eq!(said.len(), 2);
-        assert!(
-            said[0].ends_with("should distinguish viscous friction on a from quadratic drag"),
-            "{said:?}"
-        );
+        assert!(said[0].ends_with("should distinguish viscous friction on a from quadratic drag"), "{said:?}");
         assert!(
             said[1].contains("torque scale on 2 joints") && said[1].ends_with("from torque scale; instead, weigh it"),
             "{said:?}"

@@ -24,11 +24,7 @@ pub fn reasons(report: &Report, named: impl Fn(&str) -> String) -> Vec<String> {
 
 /// The sentence before the verdict, which is about the other joints; `None` if there is no verdict on other joints.
 pub fn before_verdict(report: &Report) -> Option<String> {
-    let joints: Vec<String> = report
-        .not_diagnosed
-        .iter()
-        .flat_map(|group| group.joints.clone())
-        .collect();
+    let joints: Vec<String> = report.not_diagnosed.iter().flat_map(|group| group.joints.clone()).collect();
     let is_searched = !matches!(report.verdict, Verdict::NotEnoughData | Verdict::UnitsFirst);
     (is_searched && !joints.is_empty()).then(|| {
         let (names, were) = match joints.len() {

@@ -21,19 +21,11 @@ pub fn scaled(magnitude: f64, unit: &str) -> Scaled {
         _ => &[],
     };
     if first == "kg" && unit == "kg" && magnitude > 0.0 && magnitude < 0.1 {
-        return Scaled {
-            factor: 1e-3,
-            unit: "g".into(),
-        };
+        return Scaled { factor: 1e-3, unit: "g".into() };
     }
-    let found = prefixes
-        .iter()
-        .find(|(from, _, _)| magnitude >= *from && magnitude > 0.0);
+    let found = prefixes.iter().find(|(from, _, _)| magnitude >= *from && magnitude > 0.0);
     let (factor, prefix) = found.map_or((1.0, ""), |(_, factor, prefix)| (*factor, *prefix));
-    Scaled {
-        factor,
-        unit: format!("{prefix}{unit}"),
-    }
+    Scaled { factor, unit: format!("{prefix}{unit}") }
 }
 
 /// Replaces the hyphen by a minus sign, and removes it before a zero.
@@ -97,11 +89,7 @@ pub fn round_quantity(value: f64, unit: &str) -> String {
 }
 
 fn join(text: String, unit: &str) -> String {
-    if unit.is_empty() {
-        text
-    } else {
-        format!("{text} {unit}")
-    }
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
 /// The unit; empty for a dimensionless value, whose unit may be written as `1`, `-` or `–`.
@@ -125,10 +113,7 @@ struct Shown {
 fn shown(name: &str, parameter: &Parameter) -> Shown {
     let Parameter { value, ci95, unit } = *parameter;
     let Scaled { factor, unit } = if is_relative(name, unit) {
-        Scaled {
-            factor: 0.01,
-            unit: "%".into(),
-        }
+        Scaled { factor: 0.01, unit: "%".into() }
     } else {
         scaled(value.abs(), without_one(unit))
     };
@@ -139,34 +124,19 @@ fn shown(name: &str, parameter: &Parameter) -> Shown {
     } else {
         decimals_of(value, 3)
     };
-    Shown {
-        value,
-        ci95,
-        decimals: decimals.clamp(0, 8) as usize,
-        unit,
-    }
+    Shown { value, ci95, decimals: decimals.clamp(0, 8) as usize, unit }
 }
 
 /// `2.10 ± 0.10 N m`; an asymmetric interval is written with both bounds.
 pub fn with_interval(name: &str, parameter: &Parameter) -> String {
-    let Shown {
-        value,
-        ci95: [low, high],
-        decimals,
-        unit,
-    } = shown(name, parameter);
+    let Shown { value, ci95: [low, high], decimals, unit } = shown(name, parameter);
     let (half, middle) = (0.5 * (high - low), 0.5 * (high + low));
     let text = if !half.is_finite() {
         format!("≈ {}", fixed(value, decimals))
     } else if (middle - value).abs() <= 0.15 * half || half == 0.0 {
         format!("{} ± {}", fixed(value, decimals), fixed(half, decimals))
     } else {
-        format!(
-            "{} ({} … {})",
-            fixed(value, decimals),
-            fixed(low, decimals),
-            fixed(high, decimals)
-        )
+        format!("{} ({} … {})", fixed(value, decimals), fixed(low, decimals), fixed(high, decimals))
     };
     let sign = if name == "factor" { "× " } else { "" };
     join(format!("{sign}{text}"), &unit)
@@ -216,11 +186,7 @@ pub fn percent(share: f64) -> String {
 
 /// A ratio to a standard deviation: `12 %`, or `3.2 ×` for a ratio of one and more.
 pub fn share(ratio: f64) -> String {
-    if ratio.is_finite() && ratio >= 1.005 {
-        format!("{} ×", factor(ratio))
-    } else {
-        percent(ratio)
-    }
+    if ratio.is_finite() && ratio >= 1.005 { format!("{} ×", factor(ratio)) } else { percent(ratio) }
 }
 
 /// A ratio to the standard deviation of a joint's torque, in words.
@@ -299,25 +265,13 @@ mod tests {
     #[test]
     fn parameters_read_as_an_engineer_writes_them() {
         let cases = [
-            (
-                "stiffness",
-                parameter(1912.0, [1790.0, 2034.0], "N m/rad"),
-                "1.91 ± 0.12 kN m/rad",
-            ),
+            ("stiffness", parameter(1912.0, [1790.0, 2034.0], "N m/rad"), "1.91 ± 0.12 kN m/rad"),
             ("level", parameter(2.1, [2.0, 2.2], "N m"), "2.10 ± 0.10 N m"),
-            (
-                "delay",
-                parameter(0.004, [0.0039, 0.0042], "s"),
-                "4.00 (3.90 … 4.20) ms",
-            ),
+            ("delay", parameter(0.004, [0.0039, 0.0042], "s"), "4.00 (3.90 … 4.20) ms"),
             ("relative", parameter(0.12, [0.1, 0.14], ""), "12.0 ± 2.0 %"),
             ("factor", parameter(0.85, [0.84, 0.86], "1"), "× 0.850 ± 0.010"),
             ("mass", parameter(151.3, [149.1, 153.5], "kg"), "151.3 ± 2.2 kg"),
-            (
-                "inertia",
-                parameter(0.0313, [0.03, 0.0326], "kg m²"),
-                "0.0313 ± 0.0013 kg m²",
-            ),
+            ("inertia", parameter(0.0313, [0.03, 0.0326], "kg m²"), "0.0313 ± 0.0013 kg m²"),
             ("offset", parameter(-3.16, [-3.2, -3.12], "N"), "−3.160 ± 0.040 N"),
             ("level", parameter(20.0, [f64::NEG_INFINITY, 22.0], "N"), "≈ 20.0 N"),
         ];
@@ -334,13 +288,7 @@ mod tests {
 
     #[test]
     fn errors_and_shares_are_short() {
-        for (value, text) in [
-            (0.94, "0.94"),
-            (2.31, "2.3"),
-            (0.004, "0.004"),
-            (0.0, "0"),
-            (0.999, "1.0"),
-        ] {
+        for (value, text) in [(0.94, "0.94"), (2.31, "2.3"), (0.004, "0.004"), (0.0, "0"), (0.999, "1.0")] {
             assert_eq!(nrmse(value), text);
         }
         assert_eq!(before_after(Some(0.94), Some(0.12)), "0.94 → 0.12");

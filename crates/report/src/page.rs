@@ -58,19 +58,13 @@ impl<'a> Page<'a> {
         let series = 2 * arm.dof() + 4 * report.findings.len();
         let points = (ALL_POINTS / series.max(1)).clamp(250, MOST_POINTS);
         let rows = (ALL_ROWS / arm.dof().max(1)).max(FEWEST_ROWS);
-        let figures = Figures {
-            traces,
-            arm,
-            points,
-            rows,
-        };
+        let figures = Figures { traces, arm, points, rows };
         Self { report, figures }
     }
 
     fn whole(&self) -> String {
-        let arm_view = arm_view::draw(self.report, self.figures.traces, self.figures.arm, |joint| {
-            self.has_section(joint)
-        });
+        let arm_view =
+            arm_view::draw(self.report, self.figures.traces, self.figures.arm, |joint| self.has_section(joint));
         let joints = (0..self.figures.arm.dof()).map(|joint| self.joint(joint));
         let all = [
             self.doubts(),
@@ -111,13 +105,7 @@ impl<'a> Page<'a> {
                 } }
             }
         };
-        shell(
-            &format!("Diagnosis of {}", self.report.robot),
-            "testbed diagnose",
-            "",
-            body,
-            &[UPLOT, VIEWER],
-        )
+        shell(&format!("Diagnosis of {}", self.report.robot), "testbed diagnose", "", body, &[UPLOT, VIEWER])
     }
 
     /// The joint's number in the arm, by name.
@@ -140,12 +128,8 @@ impl<'a> Page<'a> {
 }
 
 /// The library that draws zoomable figures, with its licence, and the script that gives it the data.
-const UPLOT: &str = concat!(
-    "/*\n",
-    include_str!("../uplot/LICENSE"),
-    "*/\n",
-    include_str!("../uplot/uPlot.iife.min.js")
-);
+const UPLOT: &str =
+    concat!("/*\n", include_str!("../uplot/LICENSE"), "*/\n", include_str!("../uplot/uPlot.iife.min.js"));
 const VIEWER: &str = include_str!("page/viewer.js");
 
 /// A legend's entry: a swatch and its meaning.

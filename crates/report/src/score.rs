@@ -20,11 +20,7 @@ const LARGE: f64 = 0.06;
 
 /// The title, the outcome of all cases, the targets, and why a target is not reached.
 pub fn opening(score: &Score) -> Vec<Block> {
-    let reached = score
-        .targets
-        .iter()
-        .filter(|target| target.reached == Some(true))
-        .count();
+    let reached = score.targets.iter().filter(|target| target.reached == Some(true)).count();
     let asked = score.targets.iter().filter(|target| target.reached.is_some()).count();
     let rows = score.targets.iter().map(|target| {
         let interval = target.counted.map_or_else(String::new, |counted| {
@@ -36,14 +32,7 @@ pub fn opening(score: &Score) -> Vec<Block> {
             Some(false) => "**no**",
             None => "–",
         };
-        vec![
-            target.what.clone(),
-            figure(target),
-            interval,
-            target.of.to_string(),
-            wanted(target),
-            reached.to_owned(),
-        ]
+        vec![target.what.clone(), figure(target), interval, target.of.to_string(), wanted(target), reached.to_owned()]
     });
     let head = ["", "figure", "Wilson 95 % interval", "of", "target", "reached"];
     let mut list = vec![
@@ -104,9 +93,8 @@ fn by_urdf(score: &Score) -> Block {
         ]
     };
     let groups = score.by_urdf.iter();
-    let mut rows: Vec<_> = groups
-        .map(|group| line(group.urdf.words(), group.cases, &group.strict, group.macro_f1))
-        .collect();
+    let mut rows: Vec<_> =
+        groups.map(|group| line(group.urdf.words(), group.cases, &group.strict, group.macro_f1)).collect();
     rows.push(line("**all**", score.cases, &score.strict, score.macro_f1));
     let head = [
         "URDF",
@@ -139,9 +127,7 @@ fn exempt(score: &Score) -> String {
         let counted = score.injected.iter().filter(|o| o.counts);
         counted.filter(|o| o.fate == Fate::NotObservable)
     };
-    let mut large: Vec<_> = exempt()
-        .filter_map(|o| Some((o.share.filter(|&share| share > LARGE)?, o)))
-        .collect();
+    let mut large: Vec<_> = exempt().filter_map(|o| Some((o.share.filter(|&share| share > LARGE)?, o))).collect();
     large.sort_by(|(a, x), (b, y)| b.total_cmp(a).then(x.case.cmp(&y.case)));
     let largest = exempt().filter_map(|o| o.share).reduce(f64::max);
     let words = large.iter().map(|(share, o)| {
@@ -180,12 +166,7 @@ pub fn failures(score: &Score) -> Vec<Block> {
         if let Some(form) = &outcome.form {
             what.push_str(&format!(" ({form})"));
         }
-        rows.push(vec![
-            outcome.case.clone(),
-            what,
-            said.join("; named "),
-            share(outcome.share),
-        ]);
+        rows.push(vec![outcome.case.clone(), what, said.join("; named "), share(outcome.share)]);
     }
     for wrong in &score.false_names {
         let what = name(&(wrong.effect.clone(), wrong.joint.clone()));
@@ -194,31 +175,17 @@ pub fn failures(score: &Score) -> Vec<Block> {
         } else {
             format!("injected there: {}", wrong.injected_there.join(", "))
         };
-        let admits = if wrong.admits_the_truth {
-            "; the ground truth is one of its alternatives"
-        } else {
-            ""
-        };
+        let admits = if wrong.admits_the_truth { "; the ground truth is one of its alternatives" } else { "" };
         let said = format!("named falsely{admits}; {there}");
         rows.push(vec![wrong.case.clone(), what, said, percent(wrong.share)]);
     }
     for case in score.outside.iter().filter(|case| !case.refused) {
         let what = case.injected.iter().map(name).collect::<Vec<_>>().join(", ");
-        rows.push(vec![
-            case.case.clone(),
-            what,
-            "not refused".to_owned(),
-            share(case.share),
-        ]);
+        rows.push(vec![case.case.clone(), what, "not refused".to_owned(), share(case.share)]);
     }
     for case in &score.refusals_without_cause {
         let what = format!("refused {}", case.unexplained.join(", "));
-        rows.push(vec![
-            case.case.clone(),
-            what,
-            "nothing outside the catalogue".to_owned(),
-            String::new(),
-        ]);
+        rows.push(vec![case.case.clone(), what, "nothing outside the catalogue".to_owned(), String::new()]);
     }
     for case in &score.unanswered {
         rows.push(vec![case.clone(), "no answer".to_owned(), String::new(), String::new()]);

@@ -3,11 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The style of all pages.
-const STYLE: &str = concat!(
-    include_str!("../uplot/uPlot.min.css"),
-    "\n",
-    include_str!("page/style.css")
-);
+const STYLE: &str = concat!(include_str!("../uplot/uPlot.min.css"), "\n", include_str!("page/style.css"));
 
 /// The content security policy: a browser loads and runs only what the page contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";

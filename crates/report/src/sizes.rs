@@ -19,11 +19,7 @@ pub fn list(finding: &Finding) -> Vec<String> {
     let named = found.len() > 1;
     let text = |(name, size): (&&str, &Parameter)| {
         let text = numbers::with_interval(name, size);
-        if named {
-            format!("{} {text}", parameter(name))
-        } else {
-            text
-        }
+        if named { format!("{} {text}", parameter(name)) } else { text }
     };
     found.into_iter().map(text).collect()
 }
@@ -31,9 +27,5 @@ pub fn list(finding: &Finding) -> Vec<String> {
 /// The sizes of a finding in one cell of a table.
 pub fn cell(finding: &Finding, separator: &str) -> String {
     let sizes = list(finding);
-    if sizes.is_empty() {
-        "–".to_owned()
-    } else {
-        sizes.join(separator)
-    }
+    if sizes.is_empty() { "–".to_owned() } else { sizes.join(separator) }
 }

@@ -23,11 +23,7 @@ pub fn table(header: impl IntoIterator<Item = String>) -> Table {
     table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
     table.set_header(header.into_iter().collect::<Vec<_>>());
     for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_cell_alignment(if index == 0 {
-            CellAlignment::Left
-        } else {
-            CellAlignment::Right
-        });
+        column.set_cell_alignment(if index == 0 { CellAlignment::Left } else { CellAlignment::Right });
     }
     table
 }
@@ -130,13 +126,7 @@ pub fn prose(report: &Report) -> String {
         let _ = writeln!(text, "- {}", finding.sentence);
     }
     for open in &report.unexplained {
-        let _ = writeln!(
-            text,
-            "- {}: {}. Next experiment: {}.",
-            open.joint,
-            unexplained(report, open),
-            open.next
-        );
+        let _ = writeln!(text, "- {}: {}. Next experiment: {}.", open.joint, unexplained(report, open), open.next);
     }
     for reason in not_diagnosed::reasons(report, str::to_owned) {
         let _ = writeln!(text, "- {reason}");
@@ -165,18 +155,10 @@ fn unexplained(report: &Report, open: &Unexplained) -> String {
 /// of that residual is explained.
 pub fn largest(report: &Report, open: &Unexplained, arm: Option<&Arm>) -> Option<String> {
     let is_this = |located: &&Located| located.joint == open.joint;
-    let located = report
-        .located
-        .iter()
-        .filter(|_| report.findings.is_empty())
-        .find(is_this);
+    let located = report.located.iter().filter(|_| report.findings.is_empty()).find(is_this);
     let joint = arm.and_then(|arm| arm.joints().iter().find(|joint| joint.name == open.joint));
     let mut places: Vec<String> = match (located, joint) {
-        (Some(located), Some(joint)) => located
-            .regions
-            .iter()
-            .map(|region| regions::region(region, joint))
-            .collect(),
+        (Some(located), Some(joint)) => located.regions.iter().map(|region| regions::region(region, joint)).collect(),
         _ => Vec::new(),
     };
     if !open.time.is_empty() {
@@ -207,20 +189,12 @@ fn details(finding: &Finding) -> String {
 
 /// The recordings that errors belong to: the held-out ones, if there are any.
 pub fn recordings(report: &Report) -> &'static str {
-    if report.recordings.held_out.is_empty() {
-        "training"
-    } else {
-        "held-out"
-    }
+    if report.recordings.held_out.is_empty() { "training" } else { "held-out" }
 }
 
 /// The title of errors, which belong to the held-out recordings if there are any, and to the training recordings otherwise.
 pub fn error_title(report: &Report) -> &'static str {
-    if report.recordings.held_out.is_empty() {
-        "training error"
-    } else {
-        "held-out error"
-    }
+    if report.recordings.held_out.is_empty() { "training error" } else { "held-out error" }
 }
 
 /// The error of the joint on which the finding has its largest share, nominal and with the effects found.
@@ -269,16 +243,10 @@ fn rollout(report: &Report, arm: &Arm) -> String {
         Some(format!("{before} → {after} {unit}"))
     };
     let kinds = [(JointKind::Revolute, "mrad"), (JointKind::Prismatic, "mm")];
-    let errors: Vec<String> = kinds
-        .into_iter()
-        .filter_map(|(kind, unit)| of_kind(kind, unit))
-        .collect();
+    let errors: Vec<String> = kinds.into_iter().filter_map(|(kind, unit)| of_kind(kind, unit)).collect();
     match errors.as_slice() {
         [] => String::new(),
-        errors => format!(
-            "simulated motion, RMS position error over the joints: {}",
-            words::list(errors)
-        ),
+        errors => format!("simulated motion, RMS position error over the joints: {}", words::list(errors)),
     }
 }
 

@@ -93,12 +93,7 @@ pub fn wording(effect: &'static str) -> Wording {
             distinguished_by: spec.distinguished_by,
             main: spec.main,
         },
-        None => Wording {
-            name: effect,
-            meaning: "",
-            distinguished_by: "",
-            main: &[],
-        },
+        None => Wording { name: effect, meaning: "", distinguished_by: "", main: &[] },
     }
 }
 
@@ -129,9 +124,7 @@ pub fn parameter(name: &str) -> String {
 /// `start` with a capital.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().collect::<String>() + letters.as_str()
-    })
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
 /// The joint, or the whole arm.
@@ -188,9 +181,7 @@ pub fn different_load(report: &Report) -> Option<String> {
         let pairs = first.bytes().zip(path.bytes());
         length.min(pairs.take_while(|(a, b)| a == b).count())
     });
-    let folder = first.as_bytes()[..common]
-        .iter()
-        .rposition(|&byte| matches!(byte, b'/' | b'\\'));
+    let folder = first.as_bytes()[..common].iter().rposition(|&byte| matches!(byte, b'/' | b'\\'));
     let short = |path: &String| path[folder.map_or(0, |at| at + 1)..].to_owned();
     let all = recordings.train.len() + recordings.held_out.len();
     let (with, others) = (load.recordings.len(), all - load.recordings.len());
@@ -199,21 +190,9 @@ pub fn different_load(report: &Report) -> Option<String> {
         names.truncate(NAMED_RECORDINGS - 1);
         names.push(format!("{} more", with + 1 - NAMED_RECORDINGS));
     }
-    let Parameter {
-        value,
-        ci95: [low, high],
-        unit,
-    } = load.more_than_others;
-    let (size, word) = if value < 0.0 {
-        ([-value, -high, -low], "less")
-    } else {
-        ([value, low, high], "more")
-    };
-    let size = Parameter {
-        value: size[0],
-        ci95: [size[1], size[2]],
-        unit,
-    };
+    let Parameter { value, ci95: [low, high], unit } = load.more_than_others;
+    let (size, word) = if value < 0.0 { ([-value, -high, -low], "less") } else { ([value, low, high], "more") };
+    let size = Parameter { value: size[0], ci95: [size[1], size[2]], unit };
     let advice = if report.changed.is_some() {
         ""
     } else {
@@ -270,22 +249,16 @@ fn of_diagnosed(report: &Report) -> String {
     }
     let on = list(&on);
     let open: Vec<String> = report.unexplained.iter().map(|open| open.joint.clone()).collect();
-    let open = if open.len() > 3 {
-        format!("{} joints", open.len())
-    } else {
-        list(&open)
-    };
+    let open = if open.len() > 3 { format!("{} joints", open.len()) } else { list(&open) };
     let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
-        Verdict::NoMismatch if found.is_empty() => format!(
-            "The model {}: no unmodelled effect is detectable in them.",
-            explains(report)
-        ),
+        Verdict::NoMismatch if found.is_empty() => {
+            format!("The model {}: no unmodelled effect is detectable in them.", explains(report))
+        }
         Verdict::NoMismatch => format!("The model explains the recordings, apart from {effects} on {on}."),
-        Verdict::Explained if is_validated => format!(
-            "The model omits {effects} on {on}. With these effects, the model {}.",
-            explains(report)
-        ),
+        Verdict::Explained if is_validated => {
+            format!("The model omits {effects} on {on}. With these effects, the model {}.", explains(report))
+        }
         Verdict::Explained => format!(
             "The model omits {effects} on {on}. With these effects, the model fits the training recordings; the fit is \
              not validated, because no recording is held out."

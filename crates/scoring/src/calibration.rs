@@ -38,11 +38,7 @@ pub fn calibration(findings: &[(f64, bool)]) -> Calibration {
     }
     let n = findings.len() as f64;
     let outcome = |right: bool| if right { 1.0 } else { 0.0 };
-    let brier = findings
-        .iter()
-        .map(|&(p, right)| (p - outcome(right)).powi(2))
-        .sum::<f64>()
-        / n;
+    let brier = findings.iter().map(|&(p, right)| (p - outcome(right)).powi(2)).sum::<f64>() / n;
     let mut bins = Vec::new();
     for k in 0..=BOUNDS.len() {
         let from = if k == 0 { 0.0 } else { BOUNDS[k - 1] };
@@ -61,11 +57,7 @@ pub fn calibration(findings: &[(f64, bool)]) -> Calibration {
         });
     }
     let apart = |bin: &Bin| (bin.said - bin.right.share().unwrap_or(0.0)).abs() * bin.right.of as f64;
-    Calibration {
-        brier: Some(brier),
-        error: Some(bins.iter().map(apart).sum::<f64>() / n),
-        bins,
-    }
+    Calibration { brier: Some(brier), error: Some(bins.iter().map(apart).sum::<f64>() / n), bins }
 }
 
 #[cfg(test)]

@@ -103,11 +103,7 @@ pub fn is_friction_curve(effect: &str) -> bool {
 
 /// The value of an effect's main parameter without effect: one for a factor.
 pub fn neutral(effect: &str) -> f64 {
-    if matches!(effect, "torque_scale" | "inertial_scale") {
-        1.0
-    } else {
-        0.0
-    }
+    if matches!(effect, "torque_scale" | "inertial_scale") { 1.0 } else { 0.0 }
 }
 
 /// Effects that accompany an effect and are neither right nor wrong beside it: Coulomb friction is a part of every friction

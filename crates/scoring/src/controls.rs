@@ -49,11 +49,7 @@ pub fn wrong_term(truth: &Truth, number: usize) -> Option<WrongTerm> {
     let wrong = (wrong.to_owned(), joint.clone());
     let mut terms: Vec<Name> = key.known.into_iter().filter(|name| *name != instead_of).collect();
     terms.push(wrong.clone());
-    Some(WrongTerm {
-        instead_of,
-        wrong,
-        terms,
-    })
+    Some(WrongTerm { instead_of, wrong, terms })
 }
 
 /// Held-out errors of the models: the root mean square over the joints of the NRMSE.

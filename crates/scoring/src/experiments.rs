@@ -122,31 +122,22 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
             }
         }
         let list = |names: &mut dyn Iterator<Item = &Name>| -> Vec<InCase> {
-            let in_case = |name: &Name| InCase {
-                case: case.truth.case.clone(),
-                name: name.clone(),
-            };
+            let in_case = |name: &Name| InCase { case: case.truth.case.clone(), name: name.clone() };
             names.map(in_case).collect()
         };
         let is_true = |name: &&Name| key.known.contains(*name);
         let is_false = |name: &&Name| !key.allows(name);
         all.gained.extend(list(&mut now.difference(&before).filter(is_true)));
         all.lost.extend(list(&mut before.difference(&now).filter(is_true)));
-        all.false_added
-            .extend(list(&mut now.difference(&before).filter(is_false)));
-        all.false_dropped
-            .extend(list(&mut before.difference(&now).filter(is_false)));
+        all.false_added.extend(list(&mut now.difference(&before).filter(is_false)));
+        all.false_dropped.extend(list(&mut before.difference(&now).filter(is_false)));
     }
     let mut pairs: BTreeMap<[String; 2], usize> = BTreeMap::new();
     for confusion in all.confusions.iter().filter(|c| c.proposed && c.after.is_some()) {
         *pairs.entry(confusion.pair()).or_default() += 1;
     }
     // Of equally frequent pairs, the first one counts.
-    all.most_frequent = pairs
-        .into_iter()
-        .rev()
-        .max_by_key(|&(_, count)| count)
-        .map(|(pair, _)| pair);
+    all.most_frequent = pairs.into_iter().rev().max_by_key(|&(_, count)| count).map(|(pair, _)| pair);
     let resolved = |counts: &dyn Fn(&Confusion) -> bool| {
         let made = all.confusions.iter().filter(|confusion| counts(confusion));
         Counted::of(made.filter_map(|confusion| Some(confusion.after? == After::Resolved)))
@@ -158,12 +149,7 @@ pub fn experiments(cases: &[Tried]) -> Experiments {
         resolved(&|_| true),
         resolved(&|c| c.proposed && !is_frequent(c)),
     ];
-    [
-        all.resolved,
-        all.resolved_unasked,
-        all.resolved_of_all,
-        all.resolved_of_rarer,
-    ] = counted;
+    [all.resolved, all.resolved_unasked, all.resolved_of_all, all.resolved_of_rarer] = counted;
     all.unseen_named = Counted::of(unseen);
     all
 }
@@ -175,11 +161,8 @@ fn named(other: &EffectOnJoint) -> Name {
 /// The confusions of a first diagnosis.
 fn confusions(case: &str, first: &Answer, key: &Key) -> Vec<Confusion> {
     let next = first.next_experiment.clone().unwrap_or_default();
-    let proposed: BTreeSet<(Name, Name)> = next
-        .separates
-        .iter()
-        .map(|pair| (named(&pair.finding), named(&pair.rival)))
-        .collect();
+    let proposed: BTreeSet<(Name, Name)> =
+        next.separates.iter().map(|pair| (named(&pair.finding), named(&pair.rival))).collect();
     let mut list: Vec<Confusion> = Vec::new();
     for finding in &first.findings {
         let name = (finding.effect.clone(), finding.joint.clone());
@@ -219,21 +202,13 @@ fn after(confusion: &Confusion, second: Option<&Answer>, key: &Key) -> After {
     // If both are injected, both must be named. An effect that accompanies an injected one is not wrong.
     let is_wrong = names.contains(other) && !key.allows(other);
     if !names.contains(truth) {
-        return if is_wrong {
-            After::WrongNamed
-        } else {
-            After::NeitherNamed
-        };
+        return if is_wrong { After::WrongNamed } else { After::NeitherNamed };
     }
     let is = |finding: &&crate::answer::Named, name: &Name| (&finding.effect, &finding.joint) == (&name.0, &name.1);
     let own = second.findings.iter().find(|finding| is(finding, truth));
     let still = own.is_some_and(|own| own.confusable_with.iter().any(|rival| named(rival) == *other));
     let lacks = key.known.contains(other) && !names.contains(other);
-    if still || is_wrong || lacks {
-        After::StillConfused
-    } else {
-        After::Resolved
-    }
+    if still || is_wrong || lacks { After::StillConfused } else { After::Resolved }
 }
 
 #[cfg(test)]
@@ -314,15 +289,9 @@ mod tests {
         ));
         let result = experiments(&[case]);
         let counts = |counted: Counted| (counted.hits, counted.of);
-        assert_eq!(
-            (counts(result.resolved), counts(result.resolved_unasked)),
-            ((1, 1), (0, 1))
-        );
+        assert_eq!((counts(result.resolved), counts(result.resolved_unasked)), ((1, 1), (0, 1)));
         assert_eq!(counts(result.resolved_of_all), (1, 2));
-        assert_eq!(
-            result.most_frequent,
-            Some(["quadratic_drag".to_owned(), "viscous_friction".to_owned()])
-        );
+        assert_eq!(result.most_frequent, Some(["quadratic_drag".to_owned(), "viscous_friction".to_owned()]));
         assert_eq!(counts(result.resolved_of_rarer), (0, 0));
     }
 
@@ -330,17 +299,11 @@ mod tests {
     #[test]
     fn names_gained_and_lost_are_listed() {
         let result = experiments(&[tried(Some(r#"{"findings": [{"effect": "spring", "joint": "a"}]}"#))]);
-        let name = |effect: &str| InCase {
-            case: "case_000".into(),
-            name: (effect.into(), Some("a".into())),
-        };
+        let name = |effect: &str| InCase { case: "case_000".into(), name: (effect.into(), Some("a".into())) };
         assert_eq!(result.false_added, [name("spring")]);
         assert_eq!(result.false_dropped, [name("quadratic_drag")]);
         assert!(result.gained.is_empty() && result.lost.is_empty());
         let untried = experiments(&[tried(None)]);
-        assert_eq!(
-            (untried.cases, untried.resolved.of, untried.confusions.len()),
-            (0, 0, 1)
-        );
+        assert_eq!((untried.cases, untried.resolved.of, untried.confusions.len()), (0, 0, 1));
     }
 }

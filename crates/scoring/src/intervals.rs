@@ -71,10 +71,7 @@ mod tests {
     fn wilsons_interval_is_that_of_statsmodels() {
         // statsmodels.stats.proportion.proportion_confint(15, 20, method="wilson") is (0.5313, 0.8881).
         let [low, high] = wilson(15, 20);
-        assert!(
-            (low - 0.5313).abs() < 1e-4 && (high - 0.8881).abs() < 1e-4,
-            "{low} {high}"
-        );
+        assert!((low - 0.5313).abs() < 1e-4 && (high - 0.8881).abs() < 1e-4, "{low} {high}");
         assert_eq!(wilson(0, 0), [0.0, 1.0]);
         let [low, high] = wilson(0, 60);
         assert!(low == 0.0 && (high - 0.0602).abs() < 1e-4, "{high}");

@@ -161,10 +161,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
     let other_names: Vec<(Name, Name)> = truth
         .of_note()
         .filter_map(|injected| {
-            let (given, meant) = (
-                same_machine(truth, injected)?,
-                (injected.name().to_owned(), injected.joint.clone()),
-            );
+            let (given, meant) = (same_machine(truth, injected)?, (injected.name().to_owned(), injected.joint.clone()));
             let finding = answer.findings.iter().find(|finding| name_of(finding) == given)?;
             let admits = |other: &EffectOnJoint| (&other.effect, &other.joint) == (&meant.0, &meant.1);
             (!named.contains(&meant) && finding.confusable_with.iter().any(admits)).then_some((meant, given))
@@ -181,17 +178,9 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
         .collect();
     false_names.sort_by(|a, b| b.share.total_cmp(&a.share));
     let unexplained: Vec<String> = answer.unexplained.iter().map(|left| left.joint.clone()).collect();
-    let mut result = CaseOutcome {
-        baseline: truth.baseline(),
-        ..CaseOutcome::default()
-    };
+    let mut result = CaseOutcome { baseline: truth.baseline(), ..CaseOutcome::default() };
     result.is_empty = key.unknown.is_empty() && key.known.iter().all(baseline);
-    result.baseline_found = key
-        .known
-        .iter()
-        .filter(|k| baseline(k))
-        .map(|k| named.contains(k))
-        .collect();
+    result.baseline_found = key.known.iter().filter(|k| baseline(k)).map(|k| named.contains(k)).collect();
     result.baseline_false = named.iter().filter(|n| !key.allows(n) && baseline(n)).count();
     for name in key.known.iter().filter(|name| !baseline(name)) {
         // Of several faults with the same name, the largest one counts.
@@ -253,10 +242,7 @@ pub fn outcomes(case: &Tried) -> CaseOutcome {
             .filter(|c| c.is_outside_the_catalogue())
             .filter_map(|c| c.expressed_share)
             .reduce(f64::max),
-        refused: key
-            .unknown
-            .iter()
-            .any(|(_, joint)| joint.as_ref().is_some_and(|j| unexplained.contains(j))),
+        refused: key.unknown.iter().any(|(_, joint)| joint.as_ref().is_some_and(|j| unexplained.contains(j))),
         unexplained,
         named: false_names.iter().map(|f| name_of(f)).collect(),
     };

@@ -210,10 +210,7 @@ impl Published {
         let mut not_observable: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for declared in &given.not_observable {
             if let Some(joint) = &declared.joint {
-                not_observable
-                    .entry(declared.effect.clone())
-                    .or_default()
-                    .push(joint.clone());
+                not_observable.entry(declared.effect.clone()).or_default().push(joint.clone());
             }
         }
         let held_out = given.fit.iter().map(|(joint, fit)| {
@@ -252,11 +249,7 @@ impl Published {
             let name = name_of(finding);
             let denied = self.denied.iter().find(|denied| denied.is(&name));
             let comes_with = self.said.iter().any(|said| {
-                said.joint == name.1
-                    && said
-                        .effects
-                        .iter()
-                        .any(|effect| brings(effect).contains(&name.0.as_str()))
+                said.joint == name.1 && said.effects.iter().any(|effect| brings(effect).contains(&name.0.as_str()))
             });
             let rivals = finding.confusable_with.iter();
             list.push(Besides {
@@ -264,9 +257,7 @@ impl Published {
                 comes_with,
                 share: finding.share,
                 probability: finding.probability,
-                confusable_with: rivals
-                    .map(|other| (other.effect.clone(), other.joint.clone()))
-                    .collect(),
+                confusable_with: rivals.map(|other| (other.effect.clone(), other.joint.clone())).collect(),
                 sentence: finding.sentence.clone(),
                 name,
             });
@@ -340,26 +331,12 @@ fn outcome(said: &PublishedEffect, answer: &Answer, readings: &[Reading]) -> Pub
         let place = |key: &String| keys.iter().position(|other| other == key);
         let mut list: Vec<_> = said.parameters.iter().collect();
         list.sort_by_key(|(key, _)| place(key));
-        list.into_iter()
-            .map(|(key, number)| compared(key, number, reading))
-            .collect()
+        list.into_iter().map(|(key, number)| compared(key, number, reading)).collect()
     });
     let of = |reading: &Reading| reading.of.clone();
-    let all: BTreeSet<usize> = readings
-        .iter()
-        .filter(|reading| said.is(&reading.name))
-        .flat_map(of)
-        .collect();
-    let sentences = all
-        .iter()
-        .filter_map(|&k| Some(answer.findings.get(k)?.sentence.clone()));
-    PublishedOutcome {
-        said: said.clone(),
-        fate,
-        named_as,
-        sentences: sentences.collect(),
-        numbers,
-    }
+    let all: BTreeSet<usize> = readings.iter().filter(|reading| said.is(&reading.name)).flat_map(of).collect();
+    let sentences = all.iter().filter_map(|&k| Some(answer.findings.get(k)?.sentence.clone()));
+    PublishedOutcome { said: said.clone(), fate, named_as, sentences: sentences.collect(), numbers }
 }
 
 fn compared(key: &str, number: &PublishedNumber, reading: &Reading) -> Compared {
@@ -373,9 +350,7 @@ fn compared(key: &str, number: &PublishedNumber, reading: &Reading) -> Compared 
         unit: number.unit.clone(),
         found: value,
         ci95,
-        difference: value
-            .filter(|_| published != 0.0)
-            .map(|value| (value - published) / published.abs()),
+        difference: value.filter(|_| published != 0.0).map(|value| (value - published) / published.abs()),
         covered: value.is_some() && found.is_some_and(|found| found.holds(published)),
     }
 }

@@ -73,11 +73,7 @@ impl Key {
     pub fn new(truth: &Truth) -> Self {
         let (mut known, mut unknown) = (BTreeSet::new(), BTreeSet::new());
         for injected in truth.of_note() {
-            let set = if injected.is_outside_the_catalogue() {
-                &mut unknown
-            } else {
-                &mut known
-            };
+            let set = if injected.is_outside_the_catalogue() { &mut unknown } else { &mut known };
             set.insert((injected.name().to_owned(), injected.joint.clone()));
         }
         let small: BTreeSet<Name> = truth
@@ -98,11 +94,7 @@ impl Key {
             .collect();
         brought.extend(small);
         let brought = brought.difference(&known).cloned().collect();
-        Self {
-            known,
-            unknown,
-            brought,
-        }
+        Self { known, unknown, brought }
     }
 
     /// Whether a finding is right or accompanies a right one; otherwise it is false.
@@ -113,11 +105,7 @@ impl Key {
 
 /// The names that a diagnosis gives.
 pub fn found(answer: &Answer) -> BTreeSet<Name> {
-    answer
-        .findings
-        .iter()
-        .map(|f| (f.effect.clone(), f.joint.clone()))
-        .collect()
+    answer.findings.iter().map(|f| (f.effect.clone(), f.joint.clone())).collect()
 }
 
 /// The names and the alternatives that a diagnosis gives.
@@ -145,10 +133,8 @@ pub fn plainly_counted_findings(truth: &Truth, answer: &Answer) -> Answer {
 fn counted(truth: &Truth, answer: &Answer, factor_too: bool) -> Answer {
     let mut counted = answer.clone();
     let names = found(answer);
-    let (general, mut findings): (Vec<_>, Vec<_>) = counted
-        .findings
-        .into_iter()
-        .partition(|finding| finding.effect == INERTIALS);
+    let (general, mut findings): (Vec<_>, Vec<_>) =
+        counted.findings.into_iter().partition(|finding| finding.effect == INERTIALS);
     let wrong_everywhere = truth.has_a_wrong_urdf();
     let mut taken: BTreeSet<Name> = BTreeSet::new();
     for finding in general {
@@ -184,9 +170,7 @@ fn counted(truth: &Truth, answer: &Answer, factor_too: bool) -> Answer {
 /// distinguishes it from that error.
 fn is_of_the_urdf(truth: &Truth, scale: &Injected) -> bool {
     let factor = truth_value(scale, "factor").unwrap_or(1.0);
-    truth
-        .urdf_sigma
-        .is_some_and(|sigma| factor.ln().abs() <= WITHIN_THE_URDF * sigma)
+    truth.urdf_sigma.is_some_and(|sigma| factor.ln().abs() <= WITHIN_THE_URDF * sigma)
 }
 
 /// Whether a diagnosis declares an effect of this size not testable with these recordings.

@@ -75,12 +75,7 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
                     (&sized.effect, &sized.joint, sized.main) == (&outcome.effect, &outcome.joint, true)
                 };
                 // If the size cannot be compared, the name alone counts.
-                match case
-                    .sizes
-                    .iter()
-                    .find(is_its)
-                    .is_none_or(|sized| sized.error <= SIZE_WITHIN)
-                {
+                match case.sizes.iter().find(is_its).is_none_or(|sized| sized.error <= SIZE_WITHIN) {
                     true => family.right += 1,
                     false => family.wrong_size += 1,
                 }
@@ -92,12 +87,7 @@ pub fn strict<'a>(cases: impl Iterator<Item = (&'a CaseOutcome, bool)>) -> Stric
         for name in false_names {
             families.entry(name.to_owned()).or_default().false_names += 1;
         }
-        held.extend(
-            case.sizes
-                .iter()
-                .filter(|sized| !case.is_baseline(sized))
-                .map(|sized| sized.covered),
-        );
+        held.extend(case.sizes.iter().filter(|sized| !case.is_baseline(sized)).map(|sized| sized.covered));
     }
     for family in families.values_mut() {
         let StrictFamily { asked, right, .. } = *family;

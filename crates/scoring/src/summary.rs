@@ -71,11 +71,7 @@ pub struct ParameterScore {
 /// The distribution of `values`.
 pub fn errors(values: impl IntoIterator<Item = f64>) -> Errors {
     let values: Vec<f64> = values.into_iter().collect();
-    Errors {
-        count: values.len(),
-        median: quantile(&values, 0.5),
-        ninetieth: quantile(&values, 0.9),
-    }
+    Errors { count: values.len(), median: quantile(&values, 0.5), ninetieth: quantile(&values, 0.9) }
 }
 
 /// The detection rate against both measures of size, over all injected effects, including small ones.
@@ -101,20 +97,14 @@ fn curve(measure: Measure, bounds: &[f64], injected: &[Outcome], size: &dyn Fn(&
             not_observable: mine.iter().filter(|o| o.fate == Fate::NotObservable).count(),
         })
     };
-    Curve {
-        measure,
-        bins: (0..bounds.len()).filter_map(bin).collect(),
-    }
+    Curve { measure, bins: (0..bounds.len()).filter_map(bin).collect() }
 }
 
 /// The errors and intervals by effect and parameter.
 pub fn parameter_scores(sizes: &[ScoredNumber]) -> Vec<ParameterScore> {
     let mut groups: BTreeMap<(&str, bool, &str), Vec<&ScoredNumber>> = BTreeMap::new();
     for sized in sizes {
-        groups
-            .entry((&sized.effect, !sized.main, &sized.parameter))
-            .or_default()
-            .push(sized);
+        groups.entry((&sized.effect, !sized.main, &sized.parameter)).or_default().push(sized);
     }
     let score = |((effect, minor, parameter), list): ((&str, bool, &str), Vec<&ScoredNumber>)| ParameterScore {
         effect: effect.to_owned(),

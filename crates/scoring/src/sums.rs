@@ -23,49 +23,27 @@ pub fn score(cases: &[Tried]) -> Score {
     let injected: Vec<Outcome> = all.iter().flat_map(|case| case.injected.clone()).collect();
     let false_names: Vec<FalseName> = all.iter().flat_map(|case| case.false_names.clone()).collect();
     let outside: Vec<OutsideOutcome> = all.iter().filter_map(|case| case.outside.clone()).collect();
-    let refusals: Vec<OutsideOutcome> = all
-        .iter()
-        .filter_map(|case| case.refused_without_cause.clone())
-        .collect();
+    let refusals: Vec<OutsideOutcome> = all.iter().filter_map(|case| case.refused_without_cause.clone()).collect();
     let families = families(&injected, &false_names);
     let sizes: Vec<ScoredNumber> = all.iter().flat_map(|case| case.sizes.clone()).collect();
-    let special: Vec<&ScoredNumber> = all
-        .iter()
-        .flat_map(|case| case.sizes.iter().filter(|s| !case.is_baseline(s)))
-        .collect();
+    let special: Vec<&ScoredNumber> =
+        all.iter().flat_map(|case| case.sizes.iter().filter(|s| !case.is_baseline(s))).collect();
     let held: Vec<HeldOut> = cases
         .iter()
         .filter_map(|case| {
             let answer = case.answer.as_ref()?;
-            Some(held_out(
-                &case.truth,
-                answer,
-                case.true_terms.as_ref(),
-                case.wrong_term.as_ref(),
-            ))
+            Some(held_out(&case.truth, answer, case.true_terms.as_ref(), case.wrong_term.as_ref()))
         })
         .collect();
     // A case without an answer names no effect, which must not count as correct.
-    let answered = || {
-        all.iter()
-            .zip(cases)
-            .filter_map(|(outcome, case)| case.answer.is_some().then_some(outcome))
-    };
+    let answered = || all.iter().zip(cases).filter_map(|(outcome, case)| case.answer.is_some().then_some(outcome));
     let asked: Vec<&Outcome> = injected.iter().filter(|outcome| outcome.is_asked()).collect();
     let mut score = Score {
         cases: cases.len(),
-        unanswered: cases
-            .iter()
-            .filter(|c| c.answer.is_none())
-            .map(|c| c.truth.case.clone())
-            .collect(),
+        unanswered: cases.iter().filter(|c| c.answer.is_none()).map(|c| c.truth.case.clone()).collect(),
         empty: all.iter().filter(|case| case.is_empty).count(),
         targets: Vec::new(),
-        strict: strict(
-            all.iter()
-                .zip(cases)
-                .map(|(outcome, case)| (outcome, case.answer.is_some())),
-        ),
+        strict: strict(all.iter().zip(cases).map(|(outcome, case)| (outcome, case.answer.is_some()))),
         by_urdf: by_urdf(cases, &all),
         experiments: experiments(cases),
         macro_f1: mean(&families, |family| family.f1),
@@ -74,20 +52,14 @@ pub fn score(cases: &[Tried]) -> Score {
         baseline: Counted::of(all.iter().flat_map(|case| case.baseline_found.iter().copied())),
         baseline_false: all.iter().map(|case| case.baseline_false).sum(),
         empty_with_a_false_name: Counted::of(
-            answered()
-                .filter(|case| case.is_empty)
-                .map(|case| !case.false_names.is_empty()),
+            answered().filter(|case| case.is_empty).map(|case| !case.false_names.is_empty()),
         ),
         outside_refused: Counted::of(outside.iter().map(|case| case.refused)),
         outside_with_a_wrong_name: Counted::of(
-            answered()
-                .filter_map(|case| case.outside.as_ref())
-                .map(|case| !case.named.is_empty()),
+            answered().filter_map(|case| case.outside.as_ref()).map(|case| !case.named.is_empty()),
         ),
         refused_without_cause: Counted::of(
-            answered()
-                .filter(|case| case.outside.is_none())
-                .map(|case| case.refused_without_cause.is_some()),
+            answered().filter(|case| case.outside.is_none()).map(|case| case.refused_without_cause.is_some()),
         ),
         covered: Counted::of(asked.iter().map(|o| o.fate.is_covered())),
         covered_strict: Counted::of(injected.iter().filter(|o| o.counts).map(|o| o.fate.is_covered())),
@@ -95,11 +67,7 @@ pub fn score(cases: &[Tried]) -> Score {
         parameters: parameter_scores(&sizes),
         main_parameters: errors(special.iter().filter(|s| s.main).map(|s| s.error)),
         intervals: Counted::of(special.iter().map(|s| s.covered)),
-        over_true_terms: errors(
-            held.iter()
-                .filter(|case| case.has_all_terms())
-                .filter_map(HeldOut::over_true_terms),
-        ),
+        over_true_terms: errors(held.iter().filter(|case| case.has_all_terms()).filter_map(HeldOut::over_true_terms)),
         over_true_terms_by_joint: errors(cases.iter().flat_map(by_joint)),
         tracking_over_exact: errors(cases.iter().filter_map(|case| case.tracking_over_exact)),
         tracking_over_exact_without_lag: errors(cases.iter().filter_map(|case| case.tracking_over_exact_without_lag)),
@@ -209,11 +177,7 @@ fn confusion(
 ) -> BTreeMap<String, BTreeMap<String, usize>> {
     let mut matrix: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
     let mut add = |row: &str, column: &str| {
-        *matrix
-            .entry(row.to_owned())
-            .or_default()
-            .entry(column.to_owned())
-            .or_default() += 1;
+        *matrix.entry(row.to_owned()).or_default().entry(column.to_owned()).or_default() += 1;
     };
     let mut explained: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     for outcome in injected.iter().filter(|outcome| outcome.counts) {

@@ -15,22 +15,14 @@ fn target(id: Figure, what: &str, figure: Option<f64>, [at_least, at_most]: [Opt
         at_most,
         counted: None,
         of,
-        reached: figure
-            .map(is_within)
-            .filter(|_| at_least.is_some() || at_most.is_some()),
+        reached: figure.map(is_within).filter(|_| at_least.is_some() || at_most.is_some()),
     }
 }
 
 fn share(id: Figure, what: &str, counted: Counted, bounds: [Option<f64>; 2]) -> Target {
     let of_share = target(id, what, counted.share(), bounds, counted.of);
-    let reached = of_share
-        .reached
-        .filter(|is_reached| *is_reached || is_decided(counted, bounds));
-    Target {
-        counted: Some(counted),
-        reached,
-        ..of_share
-    }
+    let reached = of_share.reached.filter(|is_reached| *is_reached || is_decided(counted, bounds));
+    Target { counted: Some(counted), reached, ..of_share }
 }
 
 /// Whether a share outside `bounds` can be said to be there: where its interval contains the middle between them, too few were
@@ -65,57 +57,24 @@ pub fn targets(score: &Score) -> Vec<Target> {
     )];
     list.extend(score.by_urdf.iter().flat_map(of_group));
     list.extend([
-        target(
-            Figure::MacroF1,
-            "macro F1 over the families",
-            score.macro_f1,
-            at_least(0.95),
-            asked,
-        ),
-        share(
-            Figure::EmptyCases,
-            "empty cases with a false name",
-            score.empty_with_a_false_name,
-            at_most(0.02),
-        ),
+        target(Figure::MacroF1, "macro F1 over the families", score.macro_f1, at_least(0.95), asked),
+        share(Figure::EmptyCases, "empty cases with a false name", score.empty_with_a_false_name, at_most(0.02)),
         share(
             Figure::OutsideRefused,
             "effects outside the catalogue: unexplained residual on the right joint",
             refused,
             at_least(0.90),
         ),
-        share(
-            Figure::OutsideNamed,
-            "effects outside the catalogue: cases with a wrong name",
-            wrong,
-            at_most(0.03),
-        ),
-        target(
-            Figure::ParameterErrors,
-            "relative error of parameters, median",
-            main.median,
-            at_most(0.05),
-            main.count,
-        ),
+        share(Figure::OutsideNamed, "effects outside the catalogue: cases with a wrong name", wrong, at_most(0.03)),
+        target(Figure::ParameterErrors, "relative error of parameters, median", main.median, at_most(0.05), main.count),
         share(
             Figure::Intervals,
             "95 % intervals that contain the true value",
             score.intervals,
             [Some(0.90), Some(0.99)],
         ),
-        share(
-            Figure::Covered,
-            "ground truth in the finding or its alternatives",
-            score.covered,
-            at_least(0.98),
-        ),
-        target(
-            Figure::HeldOut,
-            "held-out error over the true terms’, median",
-            over.median,
-            at_most(1.1),
-            over.count,
-        ),
+        share(Figure::Covered, "ground truth in the finding or its alternatives", score.covered, at_least(0.98)),
+        target(Figure::HeldOut, "held-out error over the true terms’, median", over.median, at_most(1.1), over.count),
         target(
             Figure::HeldOut,
             "held-out error over the true terms’, 90th percentile",
@@ -149,12 +108,7 @@ pub fn targets(score: &Score) -> Vec<Target> {
             experiments.resolved_of_all,
             [None, None],
         ),
-        share(
-            Figure::Confusions,
-            &without,
-            experiments.resolved_of_rarer,
-            [None, None],
-        ),
+        share(Figure::Confusions, &without, experiments.resolved_of_rarer, [None, None]),
     ]);
     list
 }
@@ -188,10 +142,7 @@ fn of_group(group: &UrdfGroup) -> [Target; 3] {
             [Some(0.90), Some(0.99)],
         ),
     ];
-    targets.map(|target| Target {
-        group: Some(group.urdf),
-        ..target
-    })
+    targets.map(|target| Target { group: Some(group.urdf), ..target })
 }
 
 #[cfg(test)]

@@ -57,15 +57,8 @@ impl Truth {
     /// of several joints belong to the robot.
     pub fn baseline(&self) -> &'static [&'static str] {
         let joints = self.torque_noise.len();
-        let drives = self
-            .injected
-            .iter()
-            .filter(|injected| injected.effect == DRIVE_INERTIA && !injected.minor);
-        if joints > 1 && drives.count() == joints {
-            BASELINE_WITH_DRIVES
-        } else {
-            BASELINE
-        }
+        let drives = self.injected.iter().filter(|injected| injected.effect == DRIVE_INERTIA && !injected.minor);
+        if joints > 1 && drives.count() == joints { BASELINE_WITH_DRIVES } else { BASELINE }
     }
 
     /// Whether the URDF is wrong everywhere, so that inertials that differ from it are a baseline effect.

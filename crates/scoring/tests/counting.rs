@@ -59,16 +59,8 @@ fn an_effect_is_found_covered_declared_unseen_refused_or_missed() {
         let over = score.injected[0].over_noise.expect("the noise is known");
         assert!((over - 1.0).abs() < 1e-12, "{over}");
         let family = &score.families["backlash"];
-        let asked = if fate == Fate::NotObservable {
-            None
-        } else {
-            Some(f64::from(u8::from(fate == Fate::Found)))
-        };
-        let expected = if score.false_names.iter().any(|name| name.effect == "backlash") {
-            Some(0.0)
-        } else {
-            asked
-        };
+        let asked = if fate == Fate::NotObservable { None } else { Some(f64::from(u8::from(fate == Fate::Found))) };
+        let expected = if score.false_names.iter().any(|name| name.effect == "backlash") { Some(0.0) } else { asked };
         assert_eq!(family.f1, expected);
     }
 }
@@ -81,13 +73,7 @@ fn an_equivalent_name_is_right() {
             {"effect": "torque_offset", "joint": "a", "offset": offset, "expressed_share": 0.05}])
     };
     let rival = json!([{"effect": "torque_offset", "joint": "a"}]);
-    let named = |rivals: Value| {
-        answer(
-            json!([finding("friction_asymmetry", "a", rivals)]),
-            json!([]),
-            json!([]),
-        )
-    };
+    let named = |rivals: Value| answer(json!([finding("friction_asymmetry", "a", rivals)]), json!([]), json!([]));
     let score = scored(truth(0.5), named(rival.clone()));
     assert_eq!(score.injected[0].fate, Fate::SameMachine);
     assert_eq!((score.macro_f1, score.macro_f1_strict), (Some(1.0), Some(0.0)));
@@ -97,10 +83,7 @@ fn an_equivalent_name_is_right() {
         later[effect]["onset"] = json!(onset);
         later
     };
-    assert_eq!(
-        scored(from(1, 30.0), named(rival.clone())).injected[0].fate,
-        Fate::SameMachine
-    );
+    assert_eq!(scored(from(1, 30.0), named(rival.clone())).injected[0].fate, Fate::SameMachine);
     // Not equivalent: the other is not listed, the offset alone moves the joint, or it acts before the friction.
     for score in [
         scored(truth(0.5), named(json!([]))),
@@ -150,13 +133,7 @@ fn parameter_errors_are_relative_to_the_truth() {
     level["parameters"] = json!({"level": number(2.2, Some(2.1), 2.3)});
     let score = scored(injected, answer(json!([scale, level]), json!([]), json!([])));
     assert_eq!(score.sizes.len(), 2);
-    let of = |effect: &str| {
-        score
-            .sizes
-            .iter()
-            .find(|sized| sized.effect == effect)
-            .expect("it is scored")
-    };
+    let of = |effect: &str| score.sizes.iter().find(|sized| sized.effect == effect).expect("it is scored");
     assert!((of("torque_scale").error - 0.1).abs() < 1e-9 && of("torque_scale").covered);
     assert!((of("coulomb_friction").error - 0.1).abs() < 1e-9 && !of("coulomb_friction").covered);
     // An interval that is open at both ends contains no value.
@@ -173,27 +150,14 @@ fn parameter_errors_are_relative_to_the_truth() {
 fn outside_the_catalogue_is_refused_on_its_joint_or_not() {
     let outside = || json!([{"effect": "dead_band_unknown", "joint": "a", "expressed_share": 0.2}]);
     let refused = scored(outside(), answer(json!([]), json!([{"joint": "a"}]), json!([])));
-    assert_eq!(
-        (refused.outside_refused.hits, refused.outside_with_a_wrong_name.hits),
-        (1, 0)
-    );
+    assert_eq!((refused.outside_refused.hits, refused.outside_with_a_wrong_name.hits), (1, 0));
     assert_eq!(refused.over_true_terms.count, 0);
-    let named = answer(
-        json!([finding("spring", "b", json!([]))]),
-        json!([{"joint": "b"}]),
-        json!([]),
-    );
+    let named = answer(json!([finding("spring", "b", json!([]))]), json!([{"joint": "b"}]), json!([]));
     let named = scored(outside(), named);
-    assert_eq!(
-        (named.outside_refused.hits, named.outside_with_a_wrong_name.hits),
-        (0, 1)
-    );
+    assert_eq!((named.outside_refused.hits, named.outside_with_a_wrong_name.hits), (0, 1));
     assert_eq!(named.confusion["outside the catalogue"]["spring"], 1);
     let empty = scored(json!([]), answer(json!([]), json!([{"joint": "b"}]), json!([])));
-    assert_eq!(
-        (empty.refused_without_cause.hits, empty.empty_with_a_false_name.of),
-        (1, 1)
-    );
+    assert_eq!((empty.refused_without_cause.hits, empty.empty_with_a_false_name.of), (1, 1));
     assert_eq!(empty.over_true_terms.median, Some(1.0));
 }
 
@@ -329,22 +293,12 @@ fn minor_effects_are_not_scored() {
         sized("quadratic_drag", "a", "coefficient", 5.0)
     ]);
     let scored = score(&[tried("case_000", small.clone(), 0.0, named)]);
-    assert_eq!(
-        (scored.injected.len(), scored.false_names.len(), scored.baseline_false),
-        (1, 0, 0)
-    );
+    assert_eq!((scored.injected.len(), scored.false_names.len(), scored.baseline_false), (1, 0, 0));
     assert_eq!((scored.strict.macro_f1, scored.macro_f1), (Some(1.0), Some(1.0)));
     assert_eq!((scored.intervals.hits, scored.intervals.of), (1, 1));
-    assert!(
-        scored.sizes[0].error < 1e-12 && scored.sizes.len() == 1,
-        "{:?}",
-        scored.sizes
-    );
+    assert!(scored.sizes[0].error < 1e-12 && scored.sizes.len() == 1, "{:?}", scored.sizes);
     let case = tried("case_000", small.clone(), 0.0, json!([]));
-    assert_eq!(
-        true_terms(&case.truth),
-        [("quadratic_drag".to_owned(), Some("a".to_owned()))]
-    );
+    assert_eq!(true_terms(&case.truth), [("quadratic_drag".to_owned(), Some("a".to_owned()))]);
     assert!(wrong_term(&case.truth, 0).is_some_and(|wrong| wrong.instead_of.0 == "quadratic_drag"));
     // A case with only small effects is empty.
     let three: Vec<Value> = small.as_array().expect("a list")[..3].to_vec();
@@ -364,33 +318,15 @@ fn the_strict_figure_requires_sizes_and_is_grouped_by_urdf() {
     let score = score(&[
         tried("case_000", drag(), 0.0, json!([named(4.7)])),
         tried("case_001", drag(), 0.03, json!([named(4.9)])),
-        tried(
-            "case_002",
-            drag(),
-            0.1,
-            json!([named(4.0), finding("spring", "b", json!([]))]),
-        ),
+        tried("case_002", drag(), 0.1, json!([named(4.0), finding("spring", "b", json!([]))])),
         tried("case_003", drag(), 0.3, json!([finding("spring", "a", json!([]))])),
     ]);
-    let groups: Vec<_> = score
-        .by_urdf
-        .iter()
-        .map(|group| (group.cases, group.strict.macro_f1))
-        .collect();
+    let groups: Vec<_> = score.by_urdf.iter().map(|group| (group.cases, group.strict.macro_f1)).collect();
     assert_eq!(groups, [(1, Some(1.0)), (2, Some(0.5)), (1, Some(0.0))]);
     let [exact, some, much] = [0, 1, 2].map(|k| &score.by_urdf[k].strict);
-    assert_eq!(
-        (some.right.hits, some.right.of, some.wrong_size, some.false_names),
-        (1, 2, 1, 1)
-    );
-    assert_eq!(
-        (some.cases_with_a_false_name.hits, some.cases_with_a_false_name.of),
-        (1, 2)
-    );
-    assert_eq!(
-        (exact.intervals.hits, some.intervals.hits, some.intervals.of),
-        (0, 1, 2)
-    );
+    assert_eq!((some.right.hits, some.right.of, some.wrong_size, some.false_names), (1, 2, 1, 1));
+    assert_eq!((some.cases_with_a_false_name.hits, some.cases_with_a_false_name.of), (1, 2));
+    assert_eq!((exact.intervals.hits, some.intervals.hits, some.intervals.of), (0, 1, 2));
     assert_eq!((much.right.of, much.false_names), (1, 1));
     // 2 × 2 of 4 asked, 2 right and 1 of another size.
     assert_eq!(score.strict.macro_f1, Some(4.0 / 7.0));

@@ -50,11 +50,8 @@ fn printed(cases: &[Tried]) -> Vec<String> {
     let recall = found / (plain.injected as f64).max(1.0);
     let precision = found / (found + plain.false_in_all() as f64).max(1.0);
     let [low, high] = scoring::wilson(plain.found, plain.injected);
-    let mut lines: Vec<String> = plain
-        .families
-        .iter()
-        .map(|(name, [found, all])| format!("{name:26} {found:4} of {all:4}"))
-        .collect();
+    let mut lines: Vec<String> =
+        plain.families.iter().map(|(name, [found, all])| format!("{name:26} {found:4} of {all:4}")).collect();
     lines.push(format!(
         "ordinary friction and drive inertia: {} of {}, {} false",
         plain.baseline[1], plain.baseline[0], plain.baseline[2]
@@ -92,11 +89,8 @@ fn compare(truths: &Path, answers: &Path) {
     let theirs = String::from_utf8_lossy(&script.stdout).into_owned();
     let theirs: Vec<&str> = theirs.lines().filter(|line| !line.starts_with("  false: ")).collect();
     let mut cases = Vec::new();
-    let mut files: Vec<PathBuf> = std::fs::read_dir(truths)
-        .expect("the truths can be read")
-        .flatten()
-        .map(|entry| entry.path())
-        .collect();
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(truths).expect("the truths can be read").flatten().map(|entry| entry.path()).collect();
     files.sort();
     for file in files {
         let text = std::fs::read_to_string(&file).expect("a truth");
@@ -121,11 +115,8 @@ fn the_plain_count_equals_the_scripts() {
     for name in ["truth", "hard_truth"] {
         let truths = folder(name);
         let answers = tempfile::tempdir().expect("a folder");
-        let mut files: Vec<PathBuf> = std::fs::read_dir(&truths)
-            .expect("the truths can be read")
-            .flatten()
-            .map(|entry| entry.path())
-            .collect();
+        let mut files: Vec<PathBuf> =
+            std::fs::read_dir(&truths).expect("the truths can be read").flatten().map(|entry| entry.path()).collect();
         files.sort();
         for (number, file) in files.iter().enumerate() {
             // One case has no answer.

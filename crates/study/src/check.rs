@@ -79,23 +79,14 @@ pub struct Misfit {
 impl Misfit {
     /// A contradiction that does not prevent a diagnosis, with the keys of a column map that correct it.
     pub fn new(kind: MisfitKind, joint: Option<&str>, text: impl Into<String>, changes: Vec<Change>) -> Self {
-        Self {
-            kind,
-            joint: joint.map(str::to_owned),
-            text: text.into(),
-            prevents_diagnosis: false,
-            changes,
-        }
+        Self { kind, joint: joint.map(str::to_owned), text: text.into(), prevents_diagnosis: false, changes }
     }
 }
 
 /// The column map (TOML) that corrects `misfits` of `recording`; `None` if none of them can be corrected by a map, or if with the
 /// map the recording still contradicts the URDF of `arm`, is explained less, or is too short to judge it.
 pub fn column_map(arm: &Arm, misfits: &[Misfit], recording: &Recording) -> Option<String> {
-    let changes: Vec<Change> = misfits
-        .iter()
-        .flat_map(|misfit| misfit.changes.iter().cloned())
-        .collect();
+    let changes: Vec<Change> = misfits.iter().flat_map(|misfit| misfit.changes.iter().cloned()).collect();
     let text = Layout::of(recording).map(&changes)?;
     let new = applied::applied(recording, &changes);
     let (new_regular, _) = new.regular().ok()?;
@@ -124,10 +115,7 @@ fn as_it_is(arm: &Arm, regular: &RegularRecording) -> Option<Fit> {
 
 /// The place of each of the arm's joints in the recording, if all are there.
 fn order(arm: &Arm, regular: &RegularRecording) -> Option<Vec<usize>> {
-    arm.joints()
-        .iter()
-        .map(|joint| regular.joints.iter().position(|name| *name == joint.name))
-        .collect()
+    arm.joints().iter().map(|joint| regular.joints.iter().position(|name| *name == joint.name)).collect()
 }
 
 /// What the check of one recording found.
@@ -141,10 +129,7 @@ pub struct Checked {
 
 /// The contradictions in names, units and limits between `regular` and `arm`.
 pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checked {
-    let mut checked = Checked {
-        misfits: names(arm, regular),
-        has_model_units: false,
-    };
+    let mut checked = Checked { misfits: names(arm, regular), has_model_units: false };
     if let Some(misfit) = positions::of_time(arm, quality) {
         // With a wrong unit of time, speeds and accelerations show nothing.
         checked.misfits.push(misfit);
@@ -175,9 +160,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
             continue;
         }
         let mut add = |kind: MisfitKind, text: String| {
-            checked
-                .misfits
-                .push(Misfit::new(kind, Some(&joint.name), text, Vec::new()));
+            checked.misfits.push(Misfit::new(kind, Some(&joint.name), text, Vec::new()));
         };
         if measured.speed_max > MOST_SPEED * limits.velocity && limits.velocity > 0.0 {
             add(
@@ -244,12 +227,7 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
         .collect()
     };
     let is_fixed = |joint: &String| arm.fixed_joints().iter().any(|fixed| fixed.name == *joint);
-    let recorded: Vec<String> = regular
-        .joints
-        .iter()
-        .filter(|joint| !is_fixed(joint))
-        .cloned()
-        .collect();
+    let recorded: Vec<String> = regular.joints.iter().filter(|joint| !is_fixed(joint)).cloned().collect();
     if !recorded.is_empty() && recorded.iter().all(|joint| !of_arm.contains(joint)) {
         let text = format!(
             "no joint of the recording ({}) is one of {} ({}); give the URDF of the robot that was recorded, or the joints' names \
@@ -260,12 +238,8 @@ fn names(arm: &Arm, regular: &RegularRecording) -> Vec<Misfit> {
         );
         return vec![Misfit::new(MisfitKind::OtherRobot, None, text, Vec::new())];
     }
-    let mut misfits = missing(
-        MisfitKind::NotInUrdf,
-        &recorded,
-        &of_arm,
-        "is in the recording, but the URDF has no such joint",
-    );
+    let mut misfits =
+        missing(MisfitKind::NotInUrdf, &recorded, &of_arm, "is in the recording, but the URDF has no such joint");
     misfits.extend(missing(
         MisfitKind::NotRecorded,
         &of_arm,
@@ -281,10 +255,7 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
     let as_it_is = fit(arm, smooth, Correction::AsItIs);
     if let Some((text, changes)) = torque_unit::of(&names, moves, &as_it_is) {
         let prevents_diagnosis = true;
-        return vec![Misfit {
-            prevents_diagnosis,
-            ..Misfit::new(MisfitKind::TorqueUnit, None, text, changes)
-        }];
+        return vec![Misfit { prevents_diagnosis, ..Misfit::new(MisfitKind::TorqueUnit, None, text, changes) }];
     }
     let mut misfits = Vec::new();
     for (joint, name) in names.iter().enumerate() {
@@ -310,22 +281,13 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
                 && residual_share_of_drive(smooth, joint) <= NEEDS_MODEL * as_it_is.residual_share[joint]
         };
         if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) && !is_drive() {
-            let what = if size < 1.0 {
-                "motor side, or a current"
-            } else {
-                "another unit"
-            };
+            let what = if size < 1.0 { "motor side, or a current" } else { "another unit" };
             let text = format!(
                 "the torque is {size:.2e} times the model's: {what}? Give tau_scale (about {}) in a column map",
                 rounded(1.0 / size, 2)
             );
             let scale = Change::scale(names[joint], 1.0 / size);
-            misfits.push(Misfit::new(
-                MisfitKind::TorqueUnit,
-                Some(names[joint]),
-                text,
-                vec![scale],
-            ));
+            misfits.push(Misfit::new(MisfitKind::TorqueUnit, Some(names[joint]), text, vec![scale]));
         }
     }
     misfits

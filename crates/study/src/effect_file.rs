@@ -68,10 +68,7 @@ impl EffectFile {
             if let Some(first) = effects.iter().position(|other| is_twin(other, &effect)) {
                 let joint = effect.joint().map_or_else(String::new, |joint| format!(" on {joint}"));
                 let first = source.place(places[first].clone());
-                let reason = format!(
-                    "{}{joint} is given twice, first at {first}; keep one of the two",
-                    effect.name()
-                );
+                let reason = format!("{}{joint} is given twice, first at {first}; keep one of the two", effect.name());
                 return Err(fail(&source, span, &reason));
             }
             effects.push(effect);
@@ -139,11 +136,7 @@ pub fn tables(source: &Source, arm: &Arm) -> anyhow::Result<(Option<String>, Vec
     let (schema, at) = (schema.get_ref(), schema.span());
     ensure!(
         schema == SCHEMA,
-        fail(
-            source,
-            at,
-            &format!("the schema is \"{schema}\"; this program reads \"{SCHEMA}\"")
-        )
+        fail(source, at, &format!("the schema is \"{schema}\"; this program reads \"{SCHEMA}\""))
     );
     if let Some(robot) = &raw.robot {
         let (found, wanted) = (robot.get_ref(), arm.name());
@@ -184,13 +177,8 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
     }
     let read = Effect::read(toml::Value::Table(table));
     // A value of a type that no effect has, such as a date.
-    let read = read.map_err(|error| {
-        fail(
-            source,
-            key_span(&source.text, &span, None),
-            &toml_reason(error.message()),
-        )
-    })?;
+    let read =
+        read.map_err(|error| fail(source, key_span(&source.text, &span, None), &toml_reason(error.message())))?;
     let effect = read.map_err(|error| {
         let (key, reason) = reason(&error, arm);
         fail(source, key_span(&source.text, &span, key), &reason)
@@ -220,10 +208,7 @@ fn reason<'a>(error: &'a ReadError, arm: &Arm) -> (Option<&'a str>, String) {
         }
         ReadError::Missing { key: "joint" } => {
             let joints = joints(arm).join(", ");
-            (
-                None,
-                format!("the line joint = \"…\" is missing; the robot has {joints}"),
-            )
+            (None, format!("the line joint = \"…\" is missing; the robot has {joints}"))
         }
         ReadError::Missing { key } => (None, format!("the line {key} = … is missing; add it")),
         ReadError::UnknownKey { key, known } => {
@@ -275,9 +260,7 @@ fn key_span(text: &str, table: &Range<usize>, key: Option<&str>) -> Range<usize>
 /// The unit of a parameter, for a comment.
 pub(crate) fn unit(effect: &Effect, key: &str) -> Option<&'static str> {
     let parameter = effect.spec().parameter(key)?;
-    let remark = parameter
-        .remark
-        .unwrap_or_else(|| parameter.quantity.unit(JointKind::Revolute));
+    let remark = parameter.remark.unwrap_or_else(|| parameter.quantity.unit(JointKind::Revolute));
     (!remark.is_empty()).then_some(remark)
 }
 

@@ -35,10 +35,7 @@ pub fn level(effect: &Effect) -> Option<(f64, Held)> {
         Some((effect.number("level"), Held::Whole))
     } else if effect.is(&FrictionAsymmetry) {
         let mean = 0.5 * (effect.number("positive") + effect.number("negative"));
-        Some((
-            mean,
-            Held::Without("the difference between the directions; their mean is in it"),
-        ))
+        Some((mean, Held::Without("the difference between the directions; their mean is in it")))
     } else if effect.is(&StribeckFriction) {
         let held = Held::Without("the rise towards standstill; the level in motion is in it");
         Some((effect.number("coulomb"), held))
@@ -66,9 +63,8 @@ pub fn in_common(effect: &Effect) -> Held {
 /// The damping (N m s/rad or N s/m) and the level of dry friction (N m or N) of a joint with these effects, if any of them is a
 /// friction.
 pub fn friction(joint: &Joint, effects: &[Effect]) -> Option<(f64, f64)> {
-    let on_joint = effects
-        .iter()
-        .filter(|effect| effect.joint() == Some(joint.name.as_str()) && effect.onset().is_none());
+    let on_joint =
+        effects.iter().filter(|effect| effect.joint() == Some(joint.name.as_str()) && effect.onset().is_none());
     let mut found = None;
     for effect in on_joint {
         let (damping, friction) = if effect.is(&ViscousFriction) {
@@ -100,16 +96,8 @@ pub fn left_out(arm: &Arm, effects: &[Effect], held: impl Fn(&Effect) -> Held) -
         let is_shown = |(key, value): &(&String, &toml::Value)| {
             !matches!(key.as_str(), "effect" | "joint") && value.as_array().is_none_or(|list| !list.is_empty())
         };
-        let place = |key: &str| {
-            effect
-                .spec()
-                .parameters
-                .iter()
-                .position(|parameter| parameter.key == key)
-        };
-        let kind = effect
-            .joint()
-            .and_then(|name| arm.joints().iter().find(|joint| joint.name == name));
+        let place = |key: &str| effect.spec().parameters.iter().position(|parameter| parameter.key == key);
+        let kind = effect.joint().and_then(|name| arm.joints().iter().find(|joint| joint.name == name));
         let kind = kind.map_or(JointKind::Revolute, |joint| joint.kind);
         let mut parameters: Vec<(&String, &toml::Value)> = table.iter().filter(is_shown).collect();
         parameters.sort_by_key(|(key, _)| place(key).unwrap_or(usize::MAX));

@@ -129,14 +129,10 @@ impl<'a> Opened<'a> {
             (&recordings.train, Role::Train),
             (&recordings.held_out, Role::HeldOut),
         ];
-        let list: Vec<(&Given, Role)> = roles
-            .into_iter()
-            .flat_map(|(given, role)| given.iter().map(move |given| (given, role)))
-            .collect();
+        let list: Vec<(&Given, Role)> =
+            roles.into_iter().flat_map(|(given, role)| given.iter().map(move |given| (given, role))).collect();
         refuse_twice(&list)?;
-        let first = list
-            .first()
-            .map(|(given, _)| given.read(map.as_ref().map(|(_, map)| map)));
+        let first = list.first().map(|(given, _)| given.read(map.as_ref().map(|(_, map)| map)));
         let first = first.transpose()?;
         Ok(Self { map, list, first })
     }
@@ -157,11 +153,7 @@ pub fn read(
     progress: &dyn Fn(&str),
     notes: &mut Notes,
 ) -> anyhow::Result<Vec<Prepared>> {
-    let Opened {
-        map,
-        list: given,
-        mut first,
-    } = opened;
+    let Opened { map, list: given, mut first } = opened;
     let choosing = given.first().map_or_else(String::new, |(given, _)| given.name());
     let mut list: Vec<Prepared> = Vec::new();
     for (given, role) in given {
@@ -211,9 +203,7 @@ pub fn read(
             "{}: no joint moves by more than 0.001 rad or m in the {:.2} s of the training recordings; record a longer motion, or \
              check the position columns",
             list[0].name,
-            training()
-                .map(|recording| recording.regular.len() as f64 * recording.regular.period)
-                .sum::<f64>()
+            training().map(|recording| recording.regular.len() as f64 * recording.regular.period).sum::<f64>()
         );
     }
     Ok(list)
@@ -296,12 +286,7 @@ fn prepare(
     notes: &mut Notes,
 ) -> anyhow::Result<Prepared> {
     for (joint, text) in turns::into_limits(&mut recording, arm) {
-        notes.add(
-            "note",
-            Kind::Misfit(MisfitKind::Turns),
-            &name,
-            about(Some(&joint), &text),
-        );
+        notes.add("note", Kind::Misfit(MisfitKind::Turns), &name, about(Some(&joint), &text));
     }
     let (regular, warnings) = recording.regular().with_context(|| name.clone())?;
     let quality = Quality::of(&recording, &regular);
@@ -329,12 +314,7 @@ fn prepare(
             | FindingKind::CoarseTorque => "note",
             _ => "warning",
         };
-        notes.add(
-            weight,
-            Kind::Finding(finding.kind),
-            &name,
-            about(finding.joint.as_deref(), &finding.text),
-        );
+        notes.add(weight, Kind::Finding(finding.kind), &name, about(finding.joint.as_deref(), &finding.text));
     }
     let has_model_units = checked.has_model_units;
     let (mut doubts, mut warnings) = (Vec::new(), Vec::new());
@@ -342,12 +322,7 @@ fn prepare(
         let list = if misfit.prevents_diagnosis {
             &mut doubts
         } else {
-            notes.add(
-                "warning",
-                Kind::Misfit(misfit.kind),
-                &name,
-                about(misfit.joint.as_deref(), &misfit.text),
-            );
+            notes.add("warning", Kind::Misfit(misfit.kind), &name, about(misfit.joint.as_deref(), &misfit.text));
             &mut warnings
         };
         list.push(Doubt {
@@ -377,11 +352,7 @@ fn prepare(
 /// Why a recording cannot be diagnosed for any arm, and the remedy.
 fn unusable(regular: &RegularRecording) -> Option<String> {
     if regular.tau.iter().all(|tau| tau.iter().all(|value| *value == tau[0])) {
-        let what = if regular.tau.iter().flatten().all(|&tau| tau == 0.0) {
-            "zero"
-        } else {
-            "constant"
-        };
+        let what = if regular.tau.iter().flatten().all(|&tau| tau == 0.0) { "zero" } else { "constant" };
         return Some(format!(
             "all torques are {what}; check the torque columns (tau_<joint>), or name them in a column map (--map)"
         ));

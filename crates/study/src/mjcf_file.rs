@@ -23,15 +23,10 @@ use validate::{LEAST_MASS, nearest_body};
 /// # Errors
 /// If an effect does not fit the arm.
 pub fn mjcf(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
-    let always: Vec<Effect> = effects
-        .iter()
-        .filter(|effect| effect.onset().is_none())
-        .cloned()
-        .collect();
+    let always: Vec<Effect> = effects.iter().filter(|effect| effect.onset().is_none()).cloned().collect();
     // A body of negative mass, for a tool that is not mounted, is a part of the last link.
-    let (apart, within): (Vec<Effect>, Vec<Effect>) = always
-        .into_iter()
-        .partition(|effect| effect.is(&Payload) && is_body(&Payload::inertia(effect)));
+    let (apart, within): (Vec<Effect>, Vec<Effect>) =
+        always.into_iter().partition(|effect| effect.is(&Payload) && is_body(&Payload::inertia(effect)));
     let corrected = Corrected::new(arm, &within)?;
     let mut omitted = held::left_out(arm, effects, held_of)?;
     let model = Model {
@@ -93,11 +88,7 @@ impl Model<'_> {
         open(&mut xml, "mujoco", &[("model", self.arm.name().to_owned())])?;
         empty(&mut xml, "compiler", &[("angle", "radian".into())])?;
         let gravity = words(self.arm.gravity().as_slice());
-        empty(
-            &mut xml,
-            "option",
-            &[("gravity", gravity), ("integrator", "implicitfast".into())],
-        )?;
+        empty(&mut xml, "option", &[("gravity", gravity), ("integrator", "implicitfast".into())])?;
         open(&mut xml, "worldbody", &[])?;
         // MuJoCo's name of the fixed frame.
         let has_base = self.arm.base_link() != "world";
@@ -133,11 +124,7 @@ impl Model<'_> {
         if j + 1 == self.arm.dof() {
             let tool = self.arm.tool_frame().link_from_frame;
             for (k, payload) in self.payloads.iter().enumerate() {
-                let name = if k == 0 {
-                    "payload".to_owned()
-                } else {
-                    format!("payload_{}", k + 1)
-                };
+                let name = if k == 0 { "payload".to_owned() } else { format!("payload_{}", k + 1) };
                 let is_taken = self.arm.joints().iter().any(|joint| joint.link_name == name);
                 let name = if is_taken { format!("{name}_at_tool") } else { name };
                 let mut attributes = vec![("name", name)];
@@ -155,11 +142,8 @@ impl Model<'_> {
             JointKind::Revolute => "hinge",
             JointKind::Prismatic => "slide",
         };
-        let mut attributes = vec![
-            ("name", joint.name.clone()),
-            ("type", kind.to_owned()),
-            ("axis", words(joint.axis.as_slice())),
-        ];
+        let mut attributes =
+            vec![("name", joint.name.clone()), ("type", kind.to_owned()), ("axis", words(joint.axis.as_slice()))];
         // All positions in the file are those of the encoder: the true position minus `offset`.
         let offset = self.corrected.encoder_offsets()[j];
         let (lower, upper) = (joint.limits.lower - offset, joint.limits.upper - offset);
@@ -200,10 +184,7 @@ impl Model<'_> {
     }
 
     fn sites(&self, xml: &mut Xml, link: Option<usize>) -> anyhow::Result<()> {
-        for Frame {
-            name, link_from_frame, ..
-        } in self.arm.frames().iter().filter(|frame| frame.link == link)
-        {
+        for Frame { name, link_from_frame, .. } in self.arm.frames().iter().filter(|frame| frame.link == link) {
             let mut attributes = vec![("name", name.clone())];
             attributes.extend(placed(link_from_frame));
             empty(xml, "site", &attributes)?;
@@ -215,19 +196,13 @@ impl Model<'_> {
 fn inertial(xml: &mut Xml, body: &Inertia) -> anyhow::Result<()> {
     let i = &body.tensor;
     let tensor = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| i[at]);
-    let attributes = [
-        ("pos", words(body.com.as_slice())),
-        ("mass", body.mass.to_string()),
-        ("fullinertia", words(&tensor)),
-    ];
+    let attributes =
+        [("pos", words(body.com.as_slice())), ("mass", body.mass.to_string()), ("fullinertia", words(&tensor))];
     empty(xml, "inertial", &attributes)
 }
 
 fn placed(pose: &Pose) -> [(&'static str, String); 2] {
-    [
-        ("pos", words(pose.translation.as_slice())),
-        ("quat", words(&pose.quaternion())),
-    ]
+    [("pos", words(pose.translation.as_slice())), ("quat", words(&pose.quaternion()))]
 }
 
 fn words(numbers: &[f64]) -> String {

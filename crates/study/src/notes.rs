@@ -53,12 +53,7 @@ pub struct Notes {
 impl Notes {
     /// Adds the notes on `file`; `weight` is `note` or `warning`.
     pub fn add(&mut self, weight: &'static str, kind: Kind, file: &str, text: String) {
-        self.list.push(Note {
-            weight,
-            kind,
-            file: file.to_owned(),
-            text,
-        });
+        self.list.push(Note { weight, kind, file: file.to_owned(), text });
     }
 
     /// The notes one by one.

@@ -107,12 +107,8 @@ impl Request {
         }
         listener.doing(Step::new(0.0, "reading"));
         let mut notes = Notes::default();
-        let recordings = inputs::read(
-            opened,
-            (&arm, &known),
-            &|doing| listener.doing(Step::new(0.0, doing)),
-            &mut notes,
-        );
+        let recordings =
+            inputs::read(opened, (&arm, &known), &|doing| listener.doing(Step::new(0.0, doing)), &mut notes);
         listener.recordings(&notes);
         let recordings = recordings?;
         let warnings = recordings.iter().flat_map(|recording| recording.warnings.clone());
@@ -121,10 +117,7 @@ impl Request {
         let mut doubts = with_one_map(doubts.collect());
         if self.as_read {
             if let Some(first) = doubts.first() {
-                listener.note(&format!(
-                    "{}: diagnosed as it was read, although {}",
-                    first.recording, first.text
-                ));
+                listener.note(&format!("{}: diagnosed as it was read, although {}", first.recording, first.text));
             }
             warnings.append(&mut doubts);
         }
@@ -181,19 +174,11 @@ impl Request {
         }
         // The known effects are part of the model that the findings correct.
         let effects = summed(&options.known, &diagnosis.effects);
-        Ok(Diagnosed {
-            robot,
-            arm,
-            diagnosis,
-            effects,
-        })
+        Ok(Diagnosed { robot, arm, diagnosis, effects })
     }
 
     fn arm(&self, robot: &RobotFile, recorded: &[String], listener: &dyn Listener) -> anyhow::Result<Arm> {
-        let options = ChainOptions {
-            recorded: recorded.to_vec(),
-            ..self.chain.clone()
-        };
+        let options = ChainOptions { recorded: recorded.to_vec(), ..self.chain.clone() };
         let arm = robot.arm(&options).context("--robot")?;
         for warning in arm.warnings() {
             listener.note(&format!("{}: {warning}", robot.path.display()));
@@ -234,9 +219,7 @@ fn with_one_map(mut doubts: Vec<Doubt>) -> Vec<Doubt> {
 
 /// A note on known effects of which a smaller size since the recordings from before is not found; `None` if there are none.
 fn less_than_known(known: &[Effect]) -> Option<String> {
-    let may_be_less = known
-        .iter()
-        .filter(|effect| effect.spec().may_end && !effect.is(&Payload));
+    let may_be_less = known.iter().filter(|effect| effect.spec().may_end && !effect.is(&Payload));
     let names: BTreeSet<&str> = may_be_less.map(Effect::name).collect();
     (!names.is_empty()).then(|| {
         let names: Vec<&str> = names.into_iter().collect();
@@ -270,17 +253,10 @@ pub fn wanted(only: &str, arm: &Arm) -> anyhow::Result<Vec<Wanted>> {
             Some((effect, joint)) => (effect.trim_end(), Some(joint.trim_start().to_owned())),
             None => (word, None),
         };
-        Wanted {
-            effect: effect.to_owned(),
-            joint,
-            ..Wanted::default()
-        }
+        Wanted { effect: effect.to_owned(), joint, ..Wanted::default() }
     });
     let wanted: Vec<Wanted> = wanted.collect();
-    ensure!(
-        !wanted.is_empty(),
-        "--only {only:?}: names no effect; give effect:joint, or a file that --model wrote"
-    );
+    ensure!(!wanted.is_empty(), "--only {only:?}: names no effect; give effect:joint, or a file that --model wrote");
     Ok(wanted)
 }
 
@@ -296,10 +272,7 @@ mod tests {
             let wanted = wanted(only, &arm).expect("effects");
             wanted.into_iter().map(|one| (one.effect, one.joint)).collect()
         };
-        let expected = [
-            ("coulomb_friction".to_owned(), Some("joint1".to_owned())),
-            ("tilted_base".to_owned(), None),
-        ];
+        let expected = [("coulomb_friction".to_owned(), Some("joint1".to_owned())), ("tilted_base".to_owned(), None)];
         assert_eq!(of("coulomb_friction:joint1,tilted_base"), expected);
         assert_eq!(of(" coulomb_friction : joint1 , tilted_base ,"), expected);
     }
@@ -318,10 +291,8 @@ mod tests {
             Some("q = \"q_a\"\ntau_scale = 5.4 # a guess"),
             Some("q = \"q_a\"\nq_offset = 1.5"),
         ];
-        let found: Vec<Option<String>> = with_one_map(maps.map(doubt).into())
-            .into_iter()
-            .map(|doubt| doubt.column_map)
-            .collect();
+        let found: Vec<Option<String>> =
+            with_one_map(maps.map(doubt).into()).into_iter().map(|doubt| doubt.column_map).collect();
         let expected = [maps[0], maps[1], maps[1], maps[3]].map(|map| map.map(str::to_owned));
         assert_eq!(found, expected);
     }

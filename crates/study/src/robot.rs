@@ -7,10 +7,8 @@ use arm::{Arm, ChainOptions};
 use recording::nearest;
 
 /// The files are part of the program, so that it runs from any folder.
-const ROBOTS: [(&str, &str); 2] = [
-    ("puma560", include_str!("../robots/puma560.urdf")),
-    ("seven_axis", include_str!("../robots/seven_axis.urdf")),
-];
+const ROBOTS: [(&str, &str); 2] =
+    [("puma560", include_str!("../robots/puma560.urdf")), ("seven_axis", include_str!("../robots/seven_axis.urdf"))];
 
 /// The names of the robots that come with testbed.
 pub fn built_in() -> impl Iterator<Item = &'static str> {
@@ -74,10 +72,7 @@ pub fn find_robot(robot: &str, folder: &Path) -> anyhow::Result<RobotFile> {
             known.join(", ")
         );
     }
-    let bytes = std::fs::read(&path).map_err(|source| arm::ArmError::Read {
-        path: path.clone(),
-        source,
-    })?;
+    let bytes = std::fs::read(&path).map_err(|source| arm::ArmError::Read { path: path.clone(), source })?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
@@ -93,12 +88,7 @@ pub fn find_robot(robot: &str, folder: &Path) -> anyhow::Result<RobotFile> {
 fn refuse_no_xml(path: &Path) -> anyhow::Result<()> {
     use std::io::Read;
     let mut start = Vec::new();
-    let unread = || {
-        format!(
-            "{}:1: cannot be read; give a .urdf file that you may read",
-            path.display()
-        )
-    };
+    let unread = || format!("{}:1: cannot be read; give a .urdf file that you may read", path.display());
     let file = std::fs::File::open(path).with_context(unread)?;
     file.take(4096).read_to_end(&mut start).with_context(unread)?;
     if start.starts_with(b"\xFF\xFE") || start.starts_with(b"\xFE\xFF") {

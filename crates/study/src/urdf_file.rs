@@ -41,25 +41,16 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
         }
         held => held,
     })?;
-    let whole = effects
-        .iter()
-        .filter(|effect| held::in_common(effect) == Held::Whole)
-        .count();
+    let whole = effects.iter().filter(|effect| held::in_common(effect) == Held::Whole).count();
     for changed in changed_links(arm, effects, &places)? {
-        if changed
-            .body
-            .is_some_and(|body| changed.is_estimated && nearest_body(&body).1)
-        {
+        if changed.body.is_some_and(|body| changed.is_estimated && nearest_body(&body).1) {
             omitted.push(format!(
                 "the inertia tensor of link \"{}\": no body has it, because the recordings do not determine it; the nearest possible one is in it",
                 changed.link
             ));
         }
     }
-    let mut lines = vec![format!(
-        "Corrected by testbed diagnose: {whole} of {} effects are in it.",
-        effects.len()
-    )];
+    let mut lines = vec![format!("Corrected by testbed diagnose: {whole} of {} effects are in it.", effects.len())];
     if !omitted.is_empty() {
         lines.push("Not in it (the TOML file of the corrected model has all effects):".into());
         lines.extend(omitted.iter().map(|line| format!("  {line}")));
@@ -105,16 +96,8 @@ pub fn stated_drive_inertias(urdf: &str) -> anyhow::Result<Vec<(String, f64)>> {
 fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
     Corrected::new(arm, effects)?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    for Changed {
-        link,
-        body,
-        is_estimated,
-    } in changed_links(arm, effects, places)?
-    {
-        let found = places
-            .links
-            .get(&link)
-            .with_context(|| format!("the URDF has no link \"{link}\""))?;
+    for Changed { link, body, is_estimated } in changed_links(arm, effects, places)? {
+        let found = places.links.get(&link).with_context(|| format!("the URDF has no link \"{link}\""))?;
         let possible = |body: Inertia| match nearest_body(&body) {
             (nearest, true) if is_estimated => nearest,
             _ => body,
@@ -126,20 +109,14 @@ fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: St
             continue;
         };
         let name = &joint.name;
-        let found = places
-            .joints
-            .get(name)
-            .with_context(|| format!("the URDF has no joint \"{name}\""))?;
+        let found = places.joints.get(name).with_context(|| format!("the URDF has no joint \"{name}\""))?;
         edits.push(found.edit(damping, friction));
     }
     for (joint, drive) in &places.drives {
         let inertia = drive_inertia(effects, joint);
         if let (Some((range, _)), true) = (&drive.rotor, inertia > 0.0) {
             let at_the_motor = inertia / drive.reflection();
-            edits.push((
-                range.clone(),
-                format!("<drake:rotor_inertia value=\"{at_the_motor}\"/>"),
-            ));
+            edits.push((range.clone(), format!("<drake:rotor_inertia value=\"{at_the_motor}\"/>")));
         }
     }
     let drives = drives(places, effects);
@@ -175,37 +152,21 @@ struct Changed {
 
 /// The URDF links whose inertials change.
 fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Result<Vec<Changed>> {
-    let always: Vec<Effect> = effects
-        .iter()
-        .filter(|effect| effect.onset().is_none())
-        .cloned()
-        .collect();
+    let always: Vec<Effect> = effects.iter().filter(|effect| effect.onset().is_none()).cloned().collect();
     let corrected = Corrected::new(arm, &always)?;
     let tool = arm.tool_frame().name;
     let mut changed = Vec::new();
     for (j, joint) in arm.joints().iter().enumerate() {
         let on_joint = |effect: &&Effect| effect.joint() == Some(&joint.name);
-        let welded = arm
-            .frames()
-            .iter()
-            .filter(|frame| frame.link == Some(j))
-            .map(|frame| &frame.name);
-        if always
-            .iter()
-            .filter(on_joint)
-            .any(|effect| effect.is(&InertialParameters))
-        {
+        let welded = arm.frames().iter().filter(|frame| frame.link == Some(j)).map(|frame| &frame.name);
+        if always.iter().filter(on_joint).any(|effect| effect.is(&InertialParameters)) {
             // The recordings only determine the body of all welded links together, which is written to the first.
             changed.push(Changed {
                 link: joint.link_name.clone(),
                 body: Some(corrected.arm().joints()[j].inertia),
                 is_estimated: true,
             });
-            changed.extend(welded.map(|link| Changed {
-                link: link.clone(),
-                body: None,
-                is_estimated: true,
-            }));
+            changed.extend(welded.map(|link| Changed { link: link.clone(), body: None, is_estimated: true }));
             continue;
         }
         let factor: f64 = always
@@ -244,11 +205,7 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
 /// The drive inertia of `joint` by `effects` (kg m² at the joint).
 fn drive_inertia(effects: &[Effect], joint: &str) -> f64 {
     let on_joint = |effect: &&Effect| effect.is(&RotorInertia) && effect.joint() == Some(joint);
-    effects
-        .iter()
-        .filter(on_joint)
-        .map(|effect| effect.number("inertia"))
-        .sum()
+    effects.iter().filter(on_joint).map(|effect| effect.number("inertia")).sum()
 }
 
 /// A transmission for each joint with a drive inertia and without a transmission in the file.

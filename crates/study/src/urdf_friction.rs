@@ -52,23 +52,13 @@ pub fn known_friction(
             continue;
         }
         let has = |is_such: &dyn Fn(&Effect) -> bool| {
-            known
-                .iter()
-                .any(|effect| effect.joint() == Some(&joint.name) && is_such(effect))
+            known.iter().any(|effect| effect.joint() == Some(&joint.name) && is_such(effect))
         };
         if joint.damping > 0.0 && !has(&|effect| effect.spec().in_urdf == InUrdf::Damping) {
-            effects.push(
-                Effect::of(&ViscousFriction)
-                    .on(&joint.name)
-                    .with("coefficient", joint.damping),
-            );
+            effects.push(Effect::of(&ViscousFriction).on(&joint.name).with("coefficient", joint.damping));
         }
         if joint.friction > 0.0 && !has(&|effect| held::level(effect).is_some()) {
-            effects.push(
-                Effect::of(&CoulombFriction)
-                    .on(&joint.name)
-                    .with("level", joint.friction),
-            );
+            effects.push(Effect::of(&CoulombFriction).on(&joint.name).with("level", joint.friction));
         }
     }
     if which != UrdfFriction::Ignored {
@@ -150,10 +140,7 @@ mod tests {
         let more = summed(&known, &[drive(10.0)]);
         assert_eq!(more, [drive(60.0)]);
         let Export { text, omitted } = corrected_urdf(&file.text, &arm, &more).expect("it is written");
-        assert!(
-            omitted.is_empty() && text.contains("rotor_inertia value=\"0.6\""),
-            "{omitted:?} {text}"
-        );
+        assert!(omitted.is_empty() && text.contains("rotor_inertia value=\"0.6\""), "{omitted:?} {text}");
         let (none, _) = known_friction(&file, &arm, UrdfFriction::Ignored, &[]).expect("it reads");
         assert!(none.is_empty());
         let (file, arm) = robot(TWO);

@@ -59,11 +59,7 @@ fn diagnose(folder: &Path, train: &[&str], held_out: &[&str]) -> (Diagnosed, Vec
     let given = |names: &[&str]| names.iter().map(|name| Given::File(folder.join(name))).collect();
     let request = Request {
         robot: robot.display().to_string(),
-        recordings: Recordings {
-            train: given(train),
-            held_out: given(held_out),
-            ..Recordings::default()
-        },
+        recordings: Recordings { train: given(train), held_out: given(held_out), ..Recordings::default() },
         torques_only: true,
         ..Request::default()
     };
@@ -87,19 +83,17 @@ fn a_short_recording_beside_a_long_one_is_used_whole() {
     let name = |name: &str| path(name).display().to_string();
     let note = format!("; {} is used whole", name("short.csv"));
     assert!(
-        notes.iter().any(
-            |found| found.starts_with("of the 2430 s of training recordings, about 270 s") && found.ends_with(&note)
-        ),
+        notes
+            .iter()
+            .any(|found| found.starts_with("of the 2430 s of training recordings, about 270 s")
+                && found.ends_with(&note)),
         "{notes:?}"
     );
     let traces = &diagnosed.diagnosis.traces.recordings;
     let times = &traces[0].time;
     assert!(times[times.len() - 1] - times[0] > 28.0, "{times:?}");
     let recordings = json(&diagnosed);
-    assert_eq!(
-        recordings["train"],
-        serde_json::json!([name("short.csv"), name("long.csv")])
-    );
+    assert_eq!(recordings["train"], serde_json::json!([name("short.csv"), name("long.csv")]));
     let parts = recordings["used_in_part"].as_array().expect("a list");
     assert_eq!(parts.len(), 1, "{parts:?}");
     assert_eq!(parts[0]["recording"], name("long.csv"));
@@ -117,39 +111,20 @@ fn a_short_recording_beside_a_long_one_is_used_whole() {
 fn a_slow_log_is_distinguished_from_stamps_in_milliseconds() {
     let folder = tempfile::tempdir().expect("a folder");
     for rate in [1, 5, 8] {
-        write(
-            &folder.path().join("slow.csv"),
-            86_400,
-            rate,
-            0.0,
-            0.05 * f64::from(rate),
-        );
+        write(&folder.path().join("slow.csv"), 86_400, rate, 0.0, 0.05 * f64::from(rate));
         let (diagnosed, _) = diagnose(folder.path(), &["slow.csv"], &[]);
         let report = &diagnosed.diagnosis.report;
         assert_eq!(report.verdict, Verdict::UnitsFirst);
-        let [doubt] = &report.doubts[..] else {
-            panic!("{:?}", report.doubts)
-        };
-        let apart = format!(
-            "its rows are {:.3} s apart, too far for velocities",
-            1.0 / f64::from(rate)
-        );
-        assert!(
-            doubt.text.starts_with(&apart) && doubt.text.ends_with("record at 100 Hz or more"),
-            "{doubt:?}"
-        );
+        let [doubt] = &report.doubts[..] else { panic!("{:?}", report.doubts) };
+        let apart = format!("its rows are {:.3} s apart, too far for velocities", 1.0 / f64::from(rate));
+        assert!(doubt.text.starts_with(&apart) && doubt.text.ends_with("record at 100 Hz or more"), "{doubt:?}");
         assert_eq!(doubt.column_map, None);
     }
     write(&folder.path().join("ms.csv"), 20_000, 1, 0.0, 1e-3);
     let (diagnosed, _) = diagnose(folder.path(), &["ms.csv"], &[]);
-    let [doubt] = &diagnosed.diagnosis.report.doubts[..] else {
-        panic!("no doubt")
-    };
+    let [doubt] = &diagnosed.diagnosis.report.doubts[..] else { panic!("no doubt") };
     assert!(
-        doubt
-            .text
-            .contains("are its stamps in ms, or are they the numbers of the rows")
-            && doubt.column_map.is_some(),
+        doubt.text.contains("are its stamps in ms, or are they the numbers of the rows") && doubt.column_map.is_some(),
         "{doubt:?}"
     );
 }

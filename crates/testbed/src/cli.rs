@@ -23,12 +23,7 @@ pub use shard::Shard;
 
 /// Tracking testbed and model diagnosis for robot arms
 #[derive(Debug, Parser)]
-#[command(
-    version,
-    about,
-    args_conflicts_with_subcommands = true,
-    arg_required_else_help = true
-)]
+#[command(version, about, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
@@ -137,12 +132,7 @@ pub struct TablesArgs {
 #[derive(Debug, Args)]
 pub struct TransferArgs {
     /// The tasks (2 to 6): a model is trained on every combination of them, and tested on each
-    #[arg(
-        long,
-        value_name = "A,B,…",
-        value_delimiter = ',',
-        default_value = "taskA,taskB,taskC"
-    )]
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', default_value = "taskA,taskB,taskC")]
     pub train: Vec<String>,
 
     /// The scenario to test on, with the robot and its errors
@@ -329,9 +319,6 @@ impl LengthScalesArg {
             Self::One => LengthScales::Isotropic,
             Self::PerInput => LengthScales::PerInput,
         };
-        TrainingOptions {
-            lengths,
-            ..TrainingOptions::default()
-        }
+        TrainingOptions { lengths, ..TrainingOptions::default() }
     }
 }

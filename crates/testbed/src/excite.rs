@@ -54,10 +54,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     }
     let limits = limits::of(args, &arm)?;
     let recordings = compare::read(&args.compare, &arm)?;
-    let options = ExcitationOptions {
-        duration: args.duration,
-        seed: args.seed,
-    };
+    let options = ExcitationOptions { duration: args.duration, seed: args.seed };
     let progress = progress::Progress::new("searching");
     let found = diagnosis::excite(&arm, &limits, &options, &|part| progress.set(part));
     progress.finish();
@@ -123,17 +120,11 @@ fn check_replaceable(args: &ExciteArgs) -> anyhow::Result<()> {
 
 /// An error with the flag that corrects it.
 fn explained(error: ExcitationError, robot: &RobotFile, arm: &Arm) -> anyhow::Error {
-    let kind = |name: &str| {
-        arm.joints()
-            .iter()
-            .find(|joint| joint.name == name)
-            .map(|joint| joint.kind)
-    };
+    let kind = |name: &str| arm.joints().iter().find(|joint| joint.name == name).map(|joint| joint.kind);
     let remedy = match &error {
-        ExcitationError::Unlimited {
-            joint,
-            what: "position",
-        } => format!("; give them: --position-limit {joint}=LOW:HIGH"),
+        ExcitationError::Unlimited { joint, what: "position" } => {
+            format!("; give them: --position-limit {joint}=LOW:HIGH")
+        }
         ExcitationError::Unlimited { joint, what } => {
             let unit = Quantity::Speed.unit(kind(joint).unwrap_or(JointKind::Revolute));
             format!("; give one: --{what}-limit {joint}=VALUE ({unit})")
@@ -182,11 +173,7 @@ fn determined(found: &Excitation) -> String {
         of.inertial,
         of.of_inertial,
         of.friction,
-        if of.drive == 1 {
-            "1 drive inertia".to_owned()
-        } else {
-            format!("{} drive inertias", of.drive)
-        }
+        if of.drive == 1 { "1 drive inertia".to_owned() } else { format!("{} drive inertias", of.drive) }
     );
     if !of.drive_with_link.is_empty() {
         let _ = write!(
@@ -201,18 +188,9 @@ fn determined(found: &Excitation) -> String {
 /// A row of the table of motions.
 fn row(name: &str, quality: &Quality) -> Vec<String> {
     let number = |value: f64| {
-        if value.is_finite() {
-            numbers::short(value)
-        } else {
-            "∞".to_owned()
-        }
+        if value.is_finite() { numbers::short(value) } else { "∞".to_owned() }
     };
-    vec![
-        name.to_owned(),
-        number(quality.condition),
-        number(quality.scaled_condition),
-        number(quality.deviation),
-    ]
+    vec![name.to_owned(), number(quality.condition), number(quality.scaled_condition), number(quality.deviation)]
 }
 
 fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String {
@@ -294,11 +272,7 @@ fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
 fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {
     let (place, torque) = (Quantity::Position.unit(kind), Quantity::Torque.unit(kind));
     let part = |value: f64, allowed: f64, unit: &str| {
-        let of = if allowed.is_finite() {
-            numbers::percent(value / allowed)
-        } else {
-            "no limit".to_owned()
-        };
+        let of = if allowed.is_finite() { numbers::percent(value / allowed) } else { "no limit".to_owned() };
         format!("{} {unit} ({of})", numbers::short(value))
     };
     let [low, high] = needed.position.map(|value| numbers::fixed(value, 2));
@@ -326,11 +300,7 @@ fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
         let [low, high] = joint.position.map(numbers::short);
         let [least, most] = joint.position_allowed.map(numbers::short);
         let of = |value: f64, allowed: f64| {
-            let allowed = if allowed.is_finite() {
-                numbers::short(allowed)
-            } else {
-                "any".to_owned()
-            };
+            let allowed = if allowed.is_finite() { numbers::short(allowed) } else { "any".to_owned() };
             format!("{} of {allowed}", numbers::short(value))
         };
         let _ = writeln!(
@@ -357,10 +327,7 @@ mod tests {
     fn the_scenario_is_loaded_as_written() {
         let robot = named_robot("puma560").expect("it comes with testbed");
         let arm = robot.arm(&arm::ChainOptions::default()).expect("an arm");
-        let options = ExcitationOptions {
-            duration: 10.0,
-            seed: 1,
-        };
+        let options = ExcitationOptions { duration: 10.0, seed: 1 };
         let limits = diagnosis::MotionLimits::of(&arm);
         let found = diagnosis::excite(&arm, &limits, &options, &|_| {}).expect("a motion");
         let folder = tempfile::tempdir().expect("a folder");

@@ -79,11 +79,7 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
         bail!("{unread} of {} recordings cannot be used", args.files.len());
     }
     if let Some(path) = &args.json {
-        let inspection = Inspection {
-            schema: "testbed.inspect/1",
-            robot: arm.as_ref().map(Arm::name),
-            files,
-        };
+        let inspection = Inspection { schema: "testbed.inspect/1", robot: arm.as_ref().map(Arm::name), files };
         let mut written = Written::default();
         written.add(path, || output::write_json(path, &inspection));
         output::print_beside(Some(path), &written.lines())?;
@@ -94,14 +90,9 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
 
 /// The arm among the robot's joints that the first readable recording holds.
 fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> anyhow::Result<Arm> {
-    let mut readable = args
-        .files
-        .iter()
-        .filter_map(|file| Recording::read_with(file, map).ok());
+    let mut readable = args.files.iter().filter_map(|file| Recording::read_with(file, map).ok());
     let first = readable.next().unwrap_or_default();
-    let arm = robot
-        .arm(&args.chain.options(named::named_joints(&first)))
-        .context("--robot")?;
+    let arm = robot.arm(&args.chain.options(named::named_joints(&first))).context("--robot")?;
     for warning in arm.warnings() {
         output::say(format_args!("note: {}: {warning}", robot.path.display()));
     }
@@ -127,16 +118,9 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
             && let Some(proposed) = check::proposal(arm, &[], &[&in_order])
         {
             column_map = check::Layout::of(&recording).map(&proposed.changes).or(column_map);
-            let misfit = check::Misfit::new(
-                MisfitKind::Columns,
-                proposed.joint.as_deref(),
-                proposed.text,
-                proposed.changes,
-            );
-            against_robot.push(check::Misfit {
-                prevents_diagnosis: proposed.is_certain,
-                ..misfit
-            });
+            let misfit =
+                check::Misfit::new(MisfitKind::Columns, proposed.joint.as_deref(), proposed.text, proposed.changes);
+            against_robot.push(check::Misfit { prevents_diagnosis: proposed.is_certain, ..misfit });
         }
     }
     let warnings = recording.warnings.iter().cloned().chain(found);
@@ -145,12 +129,7 @@ fn inspect<'a>(file: &'a Path, map: Option<&ColumnMap>, arm: Option<&Arm>) -> an
         quality,
         against_robot,
         column_map,
-        warnings: warnings
-            .map(|warning| Shown {
-                text: warning.to_string(),
-                warning,
-            })
-            .collect(),
+        warnings: warnings.map(|warning| Shown { text: warning.to_string(), warning }).collect(),
     })
 }
 
@@ -162,10 +141,7 @@ fn shown(inspection: &FileInspection<'_>, arm: Option<&Arm>) -> String {
     } else if quality.jitter_rms < 1e-3 / quality.rate {
         "regular clock".to_owned()
     } else {
-        format!(
-            "time stamps deviate by {:.1} % of a period",
-            100.0 * quality.jitter_rms * quality.rate
-        )
+        format!("time stamps deviate by {:.1} % of a period", 100.0 * quality.jitter_rms * quality.rate)
     };
     let _ = writeln!(
         text,
@@ -197,11 +173,7 @@ fn shown(inspection: &FileInspection<'_>, arm: Option<&Arm>) -> String {
             joint.joint.clone(),
             span(joint.q_range),
             rounded(joint.speed_max),
-            if joint.moves {
-                format!("{:.0} %", 100.0 * joint.moving_share)
-            } else {
-                "no".into()
-            },
+            if joint.moves { format!("{:.0} %", 100.0 * joint.moving_share) } else { "no".into() },
             joint.reversals.to_string(),
             span(joint.tau_range),
             or_dash(joint.q_step.map(rounded)),
@@ -246,10 +218,7 @@ fn unit(of: Quantity, quality: &Quality, arm: Option<&Arm>) -> String {
     let kind = |name: &String| {
         let moving = arm?.joints().iter().map(|joint| (&joint.name, joint.kind));
         let fixed = arm?.fixed_joints().iter().map(|joint| (&joint.name, joint.kind));
-        moving
-            .chain(fixed)
-            .find(|(known, _)| *known == name)
-            .map(|(_, kind)| kind)
+        moving.chain(fixed).find(|(known, _)| *known == name).map(|(_, kind)| kind)
     };
     let is_all = |wanted: JointKind| quality.joints.iter().all(|joint| kind(&joint.joint) == Some(wanted));
     let [turning, sliding] = [JointKind::Revolute, JointKind::Prismatic].map(|kind| (is_all(kind), of.unit(kind)));
@@ -266,11 +235,7 @@ fn about(joint: Option<&str>) -> String {
 fn span((low, high): (f64, f64)) -> String {
     let size = low.abs().max(high.abs());
     let short = |value: f64| rounded(if value.abs() < 2e-3 * size { 0.0 } else { value });
-    if high - low < 2e-3 * size {
-        short(high)
-    } else {
-        format!("{} … {}", short(low), short(high))
-    }
+    if high - low < 2e-3 * size { short(high) } else { format!("{} … {}", short(low), short(high)) }
 }
 
 /// Three significant digits, for narrow tables.
@@ -281,11 +246,7 @@ fn rounded(value: f64) -> String {
     } else if (1e-3..1e5).contains(&magnitude) {
         let decimals = (2 - magnitude.log10().floor() as i32).max(0) as usize;
         let text = format!("{value:.decimals$}");
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
     } else {
         format!("{value:.1e}")
     }
@@ -297,14 +258,8 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let cases = [
-            (250.0, "250"),
-            (0.1234, "0.123"),
-            (-1570.72, "-1571"),
-            (5e-5, "5.0e-5"),
-            (0.5, "0.5"),
-            (1e3, "1000"),
-        ];
+        let cases =
+            [(250.0, "250"), (0.1234, "0.123"), (-1570.72, "-1571"), (5e-5, "5.0e-5"), (0.5, "0.5"), (1e3, "1000")];
         for (value, text) in cases {
             assert_eq!(rounded(value), text);
         }

@@ -24,14 +24,7 @@ const SCENARIOS: [(&str, &str); 5] = [
 /// Motor inertias (kg m²) and gear ratios of robots whose URDFs omit them. PUMA 560: Corke and Armstrong-Hélouvry 1994.
 const DRIVES: &[(&str, &[(f64, f64)])] = &[(
     "puma560",
-    &[
-        (200e-6, 62.6111),
-        (200e-6, 107.815),
-        (200e-6, 53.7063),
-        (33e-6, 76.0364),
-        (33e-6, 71.923),
-        (33e-6, 76.686),
-    ],
+    &[(200e-6, 62.6111), (200e-6, 107.815), (200e-6, 53.7063), (33e-6, 76.0364), (33e-6, 71.923), (33e-6, 76.686)],
 )];
 
 /// Finds the scenario `name`: a file if the name ends in `.toml` or contains a folder; otherwise `scenarios/<name>.toml`
@@ -52,18 +45,9 @@ pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
         return Ok(source);
     } else {
         let mut known: Vec<String> = SCENARIOS.iter().map(|(name, _)| (*name).to_owned()).collect();
-        known.extend(
-            local_scenarios()
-                .into_iter()
-                .filter(|name| !SCENARIOS.iter().any(|(known, _)| known == name)),
-        );
+        known.extend(local_scenarios().into_iter().filter(|name| !SCENARIOS.iter().any(|(known, _)| known == name)));
         let hint = nearest(name, &known).map_or(String::new(), |nearest| format!("did you mean {nearest}? "));
-        let listed = known
-            .iter()
-            .take(MOST_LISTED)
-            .map(String::as_str)
-            .collect::<Vec<_>>()
-            .join(", ");
+        let listed = known.iter().take(MOST_LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
         let more = match known.len().saturating_sub(MOST_LISTED) {
             0 => String::new(),
             more => format!(" and {more} more under scenarios/"),
@@ -76,9 +60,7 @@ pub fn find_scenario(name: &str) -> anyhow::Result<Source> {
             path.display()
         )
     })?;
-    let name = path
-        .file_stem()
-        .map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let name = path.file_stem().map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
     Ok(Source { name, path, text })
 }
 

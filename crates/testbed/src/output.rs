@@ -34,11 +34,7 @@ pub fn message(text: &str) -> String {
     let mut lines = text.lines();
     let mut shown = visible(lines.next().unwrap_or_default()).into_owned();
     for line in lines {
-        let indent = if line.starts_with([' ', '\t']) || line.is_empty() {
-            ""
-        } else {
-            "  "
-        };
+        let indent = if line.starts_with([' ', '\t']) || line.is_empty() { "" } else { "  " };
         let _ = write!(shown, "\n{indent}{}", visible(line));
     }
     shown
@@ -121,12 +117,7 @@ pub struct OutputFile<'a> {
 impl<'a> OutputFile<'a> {
     /// The file at `path`, if the option was given.
     pub fn given(option: &'static str, path: Option<&'a Path>, endings: &'static [&'static str]) -> Option<Self> {
-        path.map(|path| Self {
-            option,
-            path,
-            endings,
-            mark: "",
-        })
+        path.map(|path| Self { option, path, endings, mark: "" })
     }
 
     /// The file, which replaces only files with this mark.
@@ -137,35 +128,20 @@ impl<'a> OutputFile<'a> {
     /// The file of `--json`, which replaces only files with this mark: the line of its schema.
     pub fn json(path: &'a Path, mark: &'static str) -> Self {
         let (option, endings) = ("--json", &["json"]);
-        Self {
-            option,
-            path,
-            endings,
-            mark,
-        }
+        Self { option, path, endings, mark }
     }
 
     /// The file of `--markdown`.
     pub fn markdown(path: &'a Path) -> Self {
         let (option, endings, mark) = ("--markdown", &["md", "markdown"], "");
-        Self {
-            option,
-            path,
-            endings,
-            mark,
-        }
+        Self { option, path, endings, mark }
     }
 
     /// The file of `--rerun save=FILE`.
     pub fn rerun(path: &'a Path) -> Self {
         // The name of the application stands uncompressed at the file's beginning.
         let (option, endings, mark) = ("--rerun save", &["rrd"], "testbed_");
-        Self {
-            option,
-            path,
-            endings,
-            mark,
-        }
+        Self { option, path, endings, mark }
     }
 
     /// Refuses a name of another format, and a file of the user that would be replaced.
@@ -252,11 +228,7 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
         _ => Path::new("."),
     };
     if let Err(error) = tempfile::tempfile_in(folder) {
-        bail!(
-            "{}: cannot be written: {error}; {}",
-            path.display(),
-            recording::write_remedy(&error)
-        );
+        bail!("{}: cannot be written: {error}; {}", path.display(), recording::write_remedy(&error));
     }
     Ok(())
 }
@@ -267,14 +239,8 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
 /// If there are two.
 pub fn check_distinct(outputs: &[OutputFile<'_>]) -> anyhow::Result<()> {
     for (k, output) in outputs.iter().enumerate() {
-        if let Some(other) = outputs[..k]
-            .iter()
-            .find(|other| study::is_same(other.path, output.path))
-        {
-            bail!(
-                "{}: is given for two outputs; give each output its own file",
-                other.path.display()
-            );
+        if let Some(other) = outputs[..k].iter().find(|other| study::is_same(other.path, output.path)) {
+            bail!("{}: is given for two outputs; give each output its own file", other.path.display());
         }
     }
     Ok(())
@@ -287,15 +253,8 @@ pub fn check_distinct(outputs: &[OutputFile<'_>]) -> anyhow::Result<()> {
 pub fn check_is_no_input<'a>(path: &Path, inputs: impl Iterator<Item = &'a Path>) -> anyhow::Result<()> {
     for input in inputs {
         if study::is_same(path, input) {
-            let other_name = if path == input {
-                String::new()
-            } else {
-                format!(" ({})", input.display())
-            };
-            bail!(
-                "{} is an input of this command{other_name}; write to another file",
-                path.display()
-            );
+            let other_name = if path == input { String::new() } else { format!(" ({})", input.display()) };
+            bail!("{} is an input of this command{other_name}; write to another file", path.display());
         }
     }
     Ok(())
@@ -308,10 +267,7 @@ mod tests {
     #[test]
     fn control_characters_are_shown_and_further_lines_are_indented() {
         assert_eq!(visible("a\tb\n"), "a\tb\n");
-        assert_eq!(
-            visible("\u{1b}[31mq\r\u{9b}2J\u{202e}é"),
-            "\\u001b[31mq\\u000d\\u009b2J\\u202eé"
-        );
+        assert_eq!(visible("\u{1b}[31mq\r\u{9b}2J\u{202e}é"), "\\u001b[31mq\\u000d\\u009b2J\\u202eé");
         let json = serde_json::to_string("\u{1b}[31m\u{9b}\u{202e}").expect("it is a string");
         let read: String = serde_json::from_str(&visible(&json)).expect("it is still JSON");
         assert_eq!(read, "\u{1b}[31m\u{9b}\u{202e}");

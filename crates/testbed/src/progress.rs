@@ -46,12 +46,7 @@ impl Progress {
     /// Progress that begins with `message`.
     pub fn new(message: impl Into<String>) -> Self {
         let now = Instant::now();
-        let clock = Arc::new(Mutex::new(Clock {
-            started: now,
-            done: 0.0,
-            at: now,
-            said: None,
-        }));
+        let clock = Arc::new(Mutex::new(Clock { started: now, done: 0.0, at: now, said: None }));
         let bar = ProgressBar::new_spinner();
         let shown = Arc::clone(&clock);
         let left = move |_: &ProgressState, text: &mut dyn Write| {
@@ -64,11 +59,7 @@ impl Progress {
         }
         bar.set_message(message.into());
         bar.enable_steady_tick(Duration::from_millis(100));
-        Self {
-            bar,
-            clock,
-            is_plain: !std::io::stderr().is_terminal(),
-        }
+        Self { bar, clock, is_plain: !std::io::stderr().is_terminal() }
     }
 
     /// Hidden progress.
@@ -101,11 +92,7 @@ impl Progress {
         if passed >= SHORT && clock.said.is_none_or(|said| now - said >= pause) {
             clock.said = Some(now);
             let left = clock.left(now).map(|left| format!(", about {} left", words(left)));
-            crate::output::say(format_args!(
-                "{message} ({}{})",
-                words(passed),
-                left.unwrap_or_default()
-            ));
+            crate::output::say(format_args!("{message} ({}{})", words(passed), left.unwrap_or_default()));
         }
     }
 
@@ -135,13 +122,7 @@ impl<'a> Pieces<'a> {
     pub fn new(progress: &'a Progress, what: impl Into<String>, count: usize, share: f64) -> Self {
         let (what, done) = (what.into(), AtomicUsize::new(0));
         progress.doing(what.clone());
-        Self {
-            progress,
-            what,
-            count,
-            share,
-            done,
-        }
+        Self { progress, what, count, share, done }
     }
 
     /// Counts one more piece as done.
@@ -170,12 +151,7 @@ mod tests {
     #[test]
     fn the_remaining_time_is_in_proportion_to_the_remaining_part() {
         let now = Instant::now();
-        let clock = |done: f64| Clock {
-            started: now,
-            done,
-            at: now + Duration::from_secs(10),
-            said: None,
-        };
+        let clock = |done: f64| Clock { started: now, done, at: now + Duration::from_secs(10), said: None };
         let later = now + Duration::from_secs(15);
         assert_eq!(clock(0.25).left(later), Some(Duration::from_secs(25)));
         assert_eq!(clock(0.9).left(later), Some(Duration::ZERO));

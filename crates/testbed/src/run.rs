@@ -69,11 +69,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let mut scenario = Scenario::load_chain(&args.scenario, chain)?;
     scenario.fade = args.fade.unwrap_or(scenario.fade);
     let kind = args.model.unwrap_or(scenario.model);
-    let sources = if kind.learns() {
-        args.train.as_ref().unwrap_or(&scenario.training).clone()
-    } else {
-        Vec::new()
-    };
+    let sources = if kind.learns() { args.train.as_ref().unwrap_or(&scenario.training).clone() } else { Vec::new() };
     if kind.learns() && sources.is_empty() {
         bail!(
             "the model \"{}\" is trained, but the scenario names nothing to train on; give --train taskA,taskB,… or \
@@ -93,9 +89,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         let progress = Progress::new("training");
         let (title, sources, count) = (kind.title(), sources.join(", "), samples.len());
         let what = format!("training {title} on {sources} ({count} samples), regressions");
-        let pieces = kind
-            .learns()
-            .then(|| Pieces::new(&progress, what, scenario.arm.dof(), 1.0));
+        let pieces = kind.learns().then(|| Pieces::new(&progress, what, scenario.arm.dof(), 1.0));
         let fitted = || pieces.iter().for_each(Pieces::next);
         let model = kind.build_with(&scenario.arm, &scenario.nominal_arm(), &samples, &options, &fitted);
         progress.finish();
@@ -129,10 +123,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         saturated: outcome.saturated.clone(),
         real_time_factor: outcome.real_time_factor,
         fade_weights: &outcome.weights,
-        control_step_us: Percentiles {
-            median: outcome.control_step_median,
-            p99: outcome.control_step_p99,
-        },
+        control_step_us: Percentiles { median: outcome.control_step_median, p99: outcome.control_step_p99 },
         regressions: model.regressions().iter().map(regression).collect(),
         energies: model.energies().map(energies),
     };
@@ -169,24 +160,15 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
     observers::check_rerun(args)?;
     RunFolder::check(out)?;
     let here = out.unwrap_or(Path::new("runs/new"));
-    let mut outputs = vec![
-        ("the run's recording", here.join("recording.csv")),
-        ("the run's summary", here.join("summary.json")),
-    ];
+    let mut outputs =
+        vec![("the run's recording", here.join("recording.csv")), ("the run's summary", here.join("summary.json"))];
     outputs.extend(observers::rerun_file(args, here).map(|file| ("the file for Rerun", file)));
     if let Some(json) = &args.json {
         folder::check_json(json, out)?;
         outputs.push(("the --json file", json.clone()));
     }
-    let mut inputs = vec![
-        ("the scenario", scenario.path.clone()),
-        ("the robot", scenario.urdf.clone()),
-    ];
-    inputs.extend(
-        sources
-            .iter()
-            .map(|source| ("the model's training data", PathBuf::from(source))),
-    );
+    let mut inputs = vec![("the scenario", scenario.path.clone()), ("the robot", scenario.urdf.clone())];
+    inputs.extend(sources.iter().map(|source| ("the model's training data", PathBuf::from(source))));
     folder::check_distinct(&outputs, &inputs)?;
     let rerun = observers::rerun_file(args, here);
     let asked = args.json.as_deref();
@@ -211,10 +193,7 @@ fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples
         eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
     }
     if args.length_scales.is_some() && !kind.has_length_scales() {
-        eprintln!(
-            "note: the model \"{}\" has no length scales; --length-scales is ignored",
-            kind.flag()
-        );
+        eprintln!("note: the model \"{}\" has no length scales; --length-scales is ignored", kind.flag());
     }
     if samples.len() > MANY_SAMPLES && args.inducing.is_none() && kind.has_length_scales() {
         eprintln!(
@@ -267,11 +246,7 @@ fn faded(scenario: &Scenario, outcome: &Outcome) -> String {
 
 /// The result as text for the terminal.
 fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
-    let trained = if sources.is_empty() {
-        String::new()
-    } else {
-        format!(", trained on {}", sources.join(", "))
-    };
+    let trained = if sources.is_empty() { String::new() } else { format!(", trained on {}", sources.join(", ")) };
     let mut text = format!(
         "{}: {} ({} joints), {} s at {} Hz under the model \"{}\"{trained}\n",
         scenario.title,

@@ -66,11 +66,7 @@ pub struct Tracking {
 impl Tracking {
     /// The tracking error of a run under `model`.
     pub fn new(model: ModelKind, outcome: &Outcome) -> Self {
-        Self {
-            model,
-            rms_error_rad: outcome.rms_error.clone(),
-            max_error_rad: outcome.max_error.clone(),
-        }
+        Self { model, rms_error_rad: outcome.rms_error.clone(), max_error_rad: outcome.max_error.clone() }
     }
 }
 
@@ -130,10 +126,7 @@ pub fn run(
     let started = Instant::now();
     for k in 0..steps {
         let time = k as f64 * step;
-        ensure!(
-            !interrupt::requested(),
-            "interrupted at {time:.1} s; nothing was written"
-        );
+        ensure!(!interrupt::requested(), "interrupted at {time:.1} s; nothing was written");
         sensors.state(plant.q(), plant.qd(), &mut measured.q, &mut measured.qd);
         let control_started = Instant::now();
         scenario.reference.at(time, &mut here);
@@ -179,11 +172,7 @@ pub fn run(
             observer.sample(&sample);
         }
         plant.step(&command.torque).with_context(|| {
-            format!(
-                "the loop is unstable under the model \"{}\"; {}",
-                kind.flag(),
-                remedy(scenario)
-            )
+            format!("the loop is unstable under the model \"{}\"; {}", kind.flag(), remedy(scenario))
         })?;
     }
     let wall = started.elapsed();
@@ -242,9 +231,7 @@ impl<'a> Accelerations<'a> {
         for (joint, torque) in self.torque.iter_mut().enumerate() {
             *torque = tau[joint] - self.scenario.viscous_friction[joint] * qd[joint];
         }
-        self.scenario
-            .arm
-            .forward_dynamics(&mut self.workspace, q, qd, &self.torque, qdd);
+        self.scenario.arm.forward_dynamics(&mut self.workspace, q, qd, &self.torque, qdd);
         Ok(())
     }
 }
@@ -361,10 +348,7 @@ impl Log {
             let index = (share * (times.len().saturating_sub(1)) as f64).round() as usize;
             times.get(index).map_or(0.0, |time| time.as_secs_f64() * 1e6)
         };
-        let mean = |sum: &Weight| Weight {
-            mean: sum.mean / steps,
-            ..*sum
-        };
+        let mean = |sum: &Weight| Weight { mean: sum.mean / steps, ..*sum };
         Outcome {
             weights: self.weights.iter().map(mean).collect(),
             rms_error,

@@ -64,12 +64,7 @@ impl Row {
     /// The errors of `model` on `samples`, beside those of the paper's table `number`.
     fn new(kind: ModelKind, model: &dyn TorqueModel, samples: &Samples, number: usize) -> Self {
         let mse = model.mean_squared_error(samples);
-        Self {
-            model: kind,
-            mean: mean(&mse),
-            mse,
-            paper: paper::row(number, kind),
-        }
+        Self { model: kind, mean: mean(&mse), mse, paper: paper::row(number, kind) }
     }
 }
 
@@ -102,10 +97,7 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
         OutputFile::json(path, "\"tables\": [").check()?;
     }
     let started = Instant::now();
-    let rows: Vec<ModelKind> = ROWS
-        .into_iter()
-        .chain(NEWER_ROWS.into_iter().filter(|_| today))
-        .collect();
+    let rows: Vec<ModelKind> = ROWS.into_iter().chain(NEWER_ROWS.into_iter().filter(|_| today)).collect();
     let progress = Progress::new("reading");
     let mut test = Scenario::load("taskD")?;
     // The paper's controller.
@@ -118,10 +110,8 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
         training_samples.push(training::training_samples(&test, &names, &ChainArgs::default(), 0)?);
     }
     // The most expensive models come first, so that no thread waits for one of them at the end.
-    let jobs: Vec<(usize, ModelKind)> = (0..TRAINING.len())
-        .rev()
-        .flat_map(|set| rows.iter().map(move |&model| (set, model)))
-        .collect();
+    let jobs: Vec<(usize, ModelKind)> =
+        (0..TRAINING.len()).rev().flat_map(|set| rows.iter().map(move |&model| (set, model))).collect();
     let learned = jobs.iter().filter(|(_, model)| model.learns()).count();
     let what = format!("training {learned} models, regressions");
     let pieces = Pieces::new(&progress, what, learned * test.arm.dof(), 0.8);
@@ -147,10 +137,8 @@ pub fn run(json: Option<&Path>, options: &TrainingOptions, today: bool) -> anyho
         });
     }
 
-    let tracked: Vec<ModelKind> = ModelKind::ALL
-        .into_iter()
-        .filter(|model| today || !model.is_newer_than_the_paper())
-        .collect();
+    let tracked: Vec<ModelKind> =
+        ModelKind::ALL.into_iter().filter(|model| today || !model.is_newer_than_the_paper()).collect();
     progress.done(0.82, format!("tracking task D with {} models", tracked.len()));
     let exact = ModelKind::True.build(&test.arm, &nominal, &test_samples, options)?;
     let track = |&kind: &ModelKind| -> anyhow::Result<Tracking> {
@@ -178,11 +166,7 @@ fn short(task: &str) -> String {
 fn text(results: &Tables) -> String {
     let header = |first: &str, last: &str| {
         let joints = (1..=6).map(|joint| format!("joint {joint}"));
-        let cells: Vec<String> = [first.to_owned()]
-            .into_iter()
-            .chain(joints)
-            .chain([last.to_owned()])
-            .collect();
+        let cells: Vec<String> = [first.to_owned()].into_iter().chain(joints).chain([last.to_owned()]).collect();
         report::terminal::table(cells)
     };
     let numbers = |values: &[f64], last: f64| -> Vec<String> {

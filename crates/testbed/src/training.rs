@@ -36,8 +36,7 @@ impl<'a> TrueTorque<'a> {
 
     /// The torques for `motion`, into `tau`. At standstill, Coulomb friction counts as zero.
     pub fn of(&mut self, motion: &Motion, tau: &mut [f64]) {
-        self.arm
-            .inverse_dynamics(&mut self.workspace, &motion.q, &motion.qd, &motion.qdd, tau);
+        self.arm.inverse_dynamics(&mut self.workspace, &motion.q, &motion.qd, &motion.qdd, tau);
         for (joint, tau) in tau.iter_mut().enumerate() {
             let speed = motion.qd[joint];
             let direction = if speed == 0.0 { 0.0 } else { speed.signum() };
@@ -76,12 +75,7 @@ pub fn reference_samples(
             Some(sensors) => sensors.torque(&tau, &mut measured),
             None => measured.copy_from_slice(&tau),
         }
-        samples.push(torque::Sample {
-            q: &motion.q,
-            qd: &motion.qd,
-            qdd: &motion.qdd,
-            tau: &measured,
-        })?;
+        samples.push(torque::Sample { q: &motion.q, qd: &motion.qd, qdd: &motion.qdd, tau: &measured })?;
     }
     Ok(())
 }
@@ -92,13 +86,7 @@ pub fn reference_samples(
 /// If its reference does not fit its arm.
 pub fn own_samples(scenario: &Scenario) -> anyhow::Result<Samples> {
     let mut samples = Samples::new(scenario.arm.dof());
-    reference_samples(
-        scenario,
-        &scenario.reference,
-        scenario.sample_times(),
-        None,
-        &mut samples,
-    )?;
+    reference_samples(scenario, &scenario.reference, scenario.sample_times(), None, &mut samples)?;
     Ok(samples)
 }
 
@@ -125,14 +113,8 @@ pub fn training_samples(
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
             let task = Scenario::load_chain(source, chain).context("training")?;
-            reference_samples(
-                scenario,
-                &task.reference,
-                task.sample_times(),
-                Some(&mut sensors),
-                &mut samples,
-            )
-            .with_context(of_source)?;
+            reference_samples(scenario, &task.reference, task.sample_times(), Some(&mut sensors), &mut samples)
+                .with_context(of_source)?;
         }
     }
     Ok(samples)
@@ -165,11 +147,7 @@ fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut S
         }
         // The next sample is due one period after the last due time, or one period after this sample if there was a gap.
         let period = 1.0 / scenario.sample_rate;
-        next = if time < next + period {
-            next + period
-        } else {
-            time + period
-        };
+        next = if time < next + period { next + period } else { time + period };
         let pick = |signal: &recording::Signal| order.iter().map(|&joint| signal[joint][k]).collect::<Vec<f64>>();
         samples.push(torque::Sample {
             q: &pick(&recording.q),

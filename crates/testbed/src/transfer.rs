@@ -121,10 +121,8 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
     let mut tasks = args.train.clone();
     tasks.push(args.test.clone());
     let samples_of = |names: &[String]| training::training_samples(&scenario, names, &chain, 0);
-    let tests: Vec<Samples> = tasks
-        .iter()
-        .map(|task| samples_of(std::slice::from_ref(task)))
-        .collect::<anyhow::Result<_>>()?;
+    let tests: Vec<Samples> =
+        tasks.iter().map(|task| samples_of(std::slice::from_ref(task))).collect::<anyhow::Result<_>>()?;
     if let Some(folder) = &args.samples {
         samples_file::write(folder, &scenario, &tasks, &tests)?;
     }
@@ -138,10 +136,8 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
     let what = "training on every set of tasks, regressions";
     let pieces = Pieces::new(progress, what, sets * scenario.arm.dof(), 1.0);
     let of_set = |&set: &usize| -> anyhow::Result<Vec<Row>> {
-        let train: Vec<String> = (0..args.train.len())
-            .filter(|task| set >> task & 1 == 1)
-            .map(|task| args.train[task].clone())
-            .collect();
+        let train: Vec<String> =
+            (0..args.train.len()).filter(|task| set >> task & 1 == 1).map(|task| args.train[task].clone()).collect();
         let model = args.model.build_with(
             &scenario.arm,
             &scenario.nominal_arm(),
@@ -151,9 +147,7 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
         );
         let model = model.with_context(|| format!("training on {}", train.join(", ")))?;
         let others = tasks.iter().zip(&tests).filter(|(task, _)| !train.contains(task));
-        Ok(others
-            .map(|(task, samples)| row(model.as_ref(), rigid.as_ref(), &train, task, samples))
-            .collect())
+        Ok(others.map(|(task, samples)| row(model.as_ref(), rigid.as_ref(), &train, task, samples)).collect())
     };
     // Sets with fewer tasks come first, as in the table.
     let mut sets: Vec<usize> = (1..1_usize << args.train.len()).collect();
@@ -165,10 +159,7 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
         let of = |joint: usize, value: fn(&Row, usize) -> f64| rows.iter().map(|row| value(row, joint)).collect();
         (0..joints.len())
             .map(|joint| {
-                rank_correlation(
-                    of(joint, value),
-                    of(joint, |row, joint| row.error[joint] / row.rigid[joint]),
-                )
+                rank_correlation(of(joint, value), of(joint, |row, joint| row.error[joint] / row.rigid[joint]))
             })
             .collect()
     };
@@ -255,17 +246,12 @@ fn rank_correlation(a: Vec<f64>, b: Vec<f64>) -> f64 {
 fn ranks(values: &[f64]) -> Vec<f64> {
     let below = |value: f64| values.iter().filter(|other| **other < value).count() as f64;
     let equal = |value: f64| values.iter().filter(|other| **other == value).count() as f64;
-    values
-        .iter()
-        .map(|&value| below(value) + (equal(value) - 1.0) / 2.0)
-        .collect()
+    values.iter().map(|&value| below(value) + (equal(value) - 1.0) / 2.0).collect()
 }
 
 /// The file's name without its folder and "task".
 fn short(task: &str) -> String {
-    let name = Path::new(task)
-        .file_stem()
-        .map_or(task.into(), |stem| stem.to_string_lossy());
+    let name = Path::new(task).file_stem().map_or(task.into(), |stem| stem.to_string_lossy());
     name.trim_start_matches("task").to_owned()
 }
 
@@ -296,11 +282,8 @@ mod tests {
 
     #[test]
     fn a_task_that_harms_is_found() {
-        let rows = [
-            made(&["A"], "D", 0.2, 0.2, 1.0),
-            made(&["B"], "D", 0.5, 0.3, 0.5),
-            made(&["A", "B"], "D", 0.3, 0.1, 0.8),
-        ];
+        let rows =
+            [made(&["A"], "D", 0.2, 0.2, 1.0), made(&["B"], "D", 0.5, 0.3, 0.5), made(&["A", "B"], "D", 0.3, 0.1, 0.8)];
         let found = harm(&rows, &["joint1".to_owned()]);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].added.as_str(), found[0].train.join(",").as_str()), ("B", "A"));

@@ -12,10 +12,7 @@ use torque::{
 
 fn bench(bencher: Bencher, model: &dyn TorqueModel, fades: bool) {
     let nominal = puma560().with_scaled_inertias(1.2);
-    let feedback = Feedback::MassMatrix {
-        kp: vec![100.0; 6],
-        kd: vec![20.0; 6],
-    };
+    let feedback = Feedback::MassMatrix { kp: vec![100.0; 6], kd: vec![20.0; 6] };
     let mut controller = Controller::new(model, nominal, feedback).expect("it fits");
     if fades {
         controller = controller.fading();

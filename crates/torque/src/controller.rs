@@ -82,22 +82,14 @@ impl<'a> Controller<'a> {
         let n = arm.dof();
         let sized = |what: &str, found: usize| {
             let what = what.to_owned();
-            (found == n).then_some(()).ok_or(TorqueError::Joints {
-                what,
-                found,
-                expected: n,
-            })
+            (found == n).then_some(()).ok_or(TorqueError::Joints { what, found, expected: n })
         };
         sized("torque model", model.dof())?;
         let (Feedback::MassMatrix { kp, kd } | Feedback::Gains { kp, kd }) = &feedback;
         for (what, gains) in [("kp", kp), ("kd", kd)] {
             sized(what, gains.len())?;
             if let Some(joint) = gains.iter().position(|gain| !(gain.is_finite() && *gain >= 0.0)) {
-                return Err(TorqueError::Gain {
-                    what,
-                    joint: joint + 1,
-                    value: gains[joint],
-                });
+                return Err(TorqueError::Gain { what, joint: joint + 1, value: gains[joint] });
             }
         }
         Ok(Self {
@@ -121,11 +113,7 @@ impl<'a> Controller<'a> {
     #[must_use]
     pub fn fading(mut self) -> Self {
         let dof = self.arm.dof();
-        self.fade = Some(Fading {
-            weights: vec![1.0; dof],
-            due: None,
-            rigid: vec![0.0; dof],
-        });
+        self.fade = Some(Fading { weights: vec![1.0; dof], due: None, rigid: vec![0.0; dof] });
         self
     }
 
@@ -140,8 +128,7 @@ impl<'a> Controller<'a> {
     /// # Panics
     /// If a slice is of another size than the arm.
     pub fn feed_forward(&mut self, q: &[f64], qd: &[f64], qdd: &[f64], command: &mut Command) {
-        self.model
-            .predict(&mut self.workspace, q, qd, qdd, &mut command.feedforward);
+        self.model.predict(&mut self.workspace, q, qd, qdd, &mut command.feedforward);
         if let Some(fade) = &mut self.fade {
             let dof = self.arm.dof();
             let due = fade.due.map_or(0..dof, |joint| joint..joint + 1);
@@ -153,8 +140,7 @@ impl<'a> Controller<'a> {
             }
             let stands_alone = self.model.stands_alone();
             if stands_alone {
-                self.arm
-                    .inverse_dynamics(&mut self.arm_workspace, q, qd, qdd, &mut fade.rigid);
+                self.arm.inverse_dynamics(&mut self.arm_workspace, q, qd, qdd, &mut fade.rigid);
             }
             for (joint, weight) in fade.weights.iter().enumerate() {
                 command.feedforward.learned[joint] *= weight;

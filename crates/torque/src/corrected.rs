@@ -65,11 +65,7 @@ impl Corrected {
             }
             machine.change_arm(|arm| arm.with_payload(payload));
         }
-        Ok(Self {
-            machine,
-            earlier,
-            tool: arm.tool_frame(),
-        })
+        Ok(Self { machine, earlier, tool: arm.tool_frame() })
     }
 
     /// The rigid arm with all effects on its inertia or gravity, and with all payloads.
@@ -119,19 +115,12 @@ impl Corrected {
     }
 
     fn evaluate(&self, time: Option<f64>, workspace: &mut Workspace, state: State<'_>, prediction: &mut Prediction) {
-        let Prediction {
-            rigid,
-            effects,
-            learned,
-        } = prediction;
+        let Prediction { rigid, effects, learned } = prediction;
         self.rigid_torque(time, workspace, state, rigid);
         effects.fill(0.0);
         learned.fill(0.0);
         for (joint, dry) in &self.machine.dry {
-            let at = Circumstance {
-                time,
-                load: self.gear_load(*joint, rigid, state.qdd),
-            };
+            let at = Circumstance { time, load: self.gear_load(*joint, rigid, state.qdd) };
             let speed = state.qd[*joint];
             let direction = sign(speed);
             effects[*joint] += direction * dry.level(speed, at) + direction.abs() * dry.bias();
@@ -151,10 +140,7 @@ impl Corrected {
         let time = Some(time);
         let mut friction = vec![[0.0; 2]; self.dof()];
         for (joint, dry) in &self.machine.dry {
-            let at = Circumstance {
-                time,
-                load: self.gear_load(*joint, &prediction.rigid, qdd),
-            };
+            let at = Circumstance { time, load: self.gear_load(*joint, &prediction.rigid, qdd) };
             let (direction, factor) = (sign(qd[*joint]), self.torque_factor(*joint, time));
             let added = direction * dry.level(qd[*joint], at) + (direction.abs() - 1.0) * dry.bias();
             friction[*joint][0] += factor * added;
@@ -171,9 +157,7 @@ impl Corrected {
     /// The inverse dynamics of the arm at `time`, at the true positions of the joints.
     fn rigid_torque(&self, time: Option<f64>, workspace: &mut Workspace, state: State<'_>, rigid: &mut [f64]) {
         let State { q, qd, qdd } = state;
-        let Workspace {
-            arm: scratch, input, ..
-        } = workspace;
+        let Workspace { arm: scratch, input, .. } = workspace;
         let scratch = scratch.get_or_insert_with(|| arm::Workspace::new(&self.machine.arm));
         let standing = &mut input[..q.len()];
         for ((standing, q), offset) in standing.iter_mut().zip(q).zip(&self.machine.encoder_offsets) {

@@ -73,12 +73,7 @@ impl Lagrangian {
             .map_err(TorqueError::Energies)?;
         let range = regression.range();
         let from = (0..dof).map(|joint| reach::beginning(range.mean_variance_share(joint)));
-        Ok(Self {
-            rigid_body,
-            from: from.collect(),
-            range,
-            regression,
-        })
+        Ok(Self { rigid_body, from: from.collect(), range, regression })
     }
 }
 
@@ -115,9 +110,7 @@ impl TorqueModel for Lagrangian {
     }
 
     fn variance<'w>(&self, workspace: &'w mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<&'w [f64]> {
-        let Workspace {
-            lagrangian, variance, ..
-        } = workspace;
+        let Workspace { lagrangian, variance, .. } = workspace;
         let scratch = lagrangian.get_or_insert_with(|| self.regression.workspace());
         self.regression.variance([q, qd, qdd], scratch, variance);
         Some(variance)

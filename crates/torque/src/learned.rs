@@ -82,12 +82,7 @@ impl Learned {
     ) -> Result<Self, TorqueError> {
         let dof = samples.dof();
         samples.check(arm)?;
-        let mut model = Self {
-            rigid_body: arm.cloned(),
-            inputs,
-            regressions: Vec::new(),
-            reaches: Vec::new(),
-        };
+        let mut model = Self { rigid_body: arm.cloned(), inputs, regressions: Vec::new(), reaches: Vec::new() };
         let mut workspace = Workspace::new(dof);
         let dimension = inputs.dimension(dof);
         let mut x = vec![Vec::with_capacity(samples.len() * dimension); dof];
@@ -112,10 +107,7 @@ impl Learned {
             .map(|joint| {
                 let regression = TrainingSet::new(dimension, &x[joint], &y[joint]).and_then(|set| Gp::fit(&set, &fit));
                 fitted();
-                regression.map_err(|source| TorqueError::Regression {
-                    joint: joint + 1,
-                    source,
-                })
+                regression.map_err(|source| TorqueError::Regression { joint: joint + 1, source })
             })
             .collect();
         model.regressions = regressions?;

@@ -37,9 +37,7 @@ pub trait TorqueModel: Send + Sync {
     /// The standard deviation (N m or N) of the noise that the learned part of `joint` has found in its training data; 0 without a
     /// learned part.
     fn noise(&self, joint: usize) -> f64 {
-        self.regressions()
-            .get(joint)
-            .map_or(0.0, |gp| gp.hyperparameters().noise)
+        self.regressions().get(joint).map_or(0.0, |gp| gp.hyperparameters().noise)
     }
 
     /// The reliability of the learned part of `joint` from 0 (no training data near the motion) to 1, for the motion
@@ -85,11 +83,7 @@ pub struct Prediction {
 impl Prediction {
     /// Zero torque for `dof` joints.
     pub fn new(dof: usize) -> Self {
-        Self {
-            rigid: vec![0.0; dof],
-            effects: vec![0.0; dof],
-            learned: vec![0.0; dof],
-        }
+        Self { rigid: vec![0.0; dof], effects: vec![0.0; dof], learned: vec![0.0; dof] }
     }
 
     /// The sum of the parts for `joint`.

@@ -48,11 +48,7 @@ pub struct Motion {
 impl Motion {
     /// At rest at position zero.
     pub fn new(dof: usize) -> Self {
-        Self {
-            q: vec![0.0; dof],
-            qd: vec![0.0; dof],
-            qdd: vec![0.0; dof],
-        }
+        Self { q: vec![0.0; dof], qd: vec![0.0; dof], qdd: vec![0.0; dof] }
     }
 }
 
@@ -87,11 +83,8 @@ impl Fade {
     /// The factor at `time` with its first two derivatives (1, 1/s, 1/s²): x³ (10 − 15 x + 6 x²), with zero velocity
     /// and acceleration on both sides.
     fn factor(&self, time: f64) -> [f64; 3] {
-        let (x, sense) = if time < 0.5 * self.end {
-            (time / self.seconds, 1.0)
-        } else {
-            ((self.end - time) / self.seconds, -1.0)
-        };
+        let (x, sense) =
+            if time < 0.5 * self.end { (time / self.seconds, 1.0) } else { ((self.end - time) / self.seconds, -1.0) };
         if x >= 1.0 {
             return [1.0, 0.0, 0.0];
         }
@@ -116,16 +109,8 @@ mod tests {
         let reference = Reference {
             centre: vec![0.3],
             sines: vec![
-                Sine {
-                    amplitude: vec![0.8],
-                    frequency: vec![0.22],
-                    phase: vec![0.4],
-                },
-                Sine {
-                    amplitude: vec![0.2],
-                    frequency: vec![1.1],
-                    phase: vec![-1.0],
-                },
+                Sine { amplitude: vec![0.8], frequency: vec![0.22], phase: vec![0.4] },
+                Sine { amplitude: vec![0.2], frequency: vec![1.1], phase: vec![-1.0] },
             ],
             fade: Some(Fade { seconds: 1.0, end: 5.0 }),
         };

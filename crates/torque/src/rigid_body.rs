@@ -23,8 +23,7 @@ impl TorqueModel for RigidBody {
     }
 
     fn predict(&self, workspace: &mut Workspace, q: &[f64], qd: &[f64], qdd: &[f64], prediction: &mut Prediction) {
-        self.arm
-            .inverse_dynamics(workspace.arm(&self.arm), q, qd, qdd, &mut prediction.rigid);
+        self.arm.inverse_dynamics(workspace.arm(&self.arm), q, qd, qdd, &mut prediction.rigid);
         prediction.effects.fill(0.0);
         prediction.learned.fill(0.0);
     }

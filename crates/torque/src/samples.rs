@@ -41,11 +41,7 @@ impl Samples {
         if let Some(arm) = arm
             && arm.dof() != self.dof
         {
-            return Err(TorqueError::Joints {
-                what: "training samples".into(),
-                found: self.dof,
-                expected: arm.dof(),
-            });
+            return Err(TorqueError::Joints { what: "training samples".into(), found: self.dof, expected: arm.dof() });
         }
         if self.is_empty() {
             return Err(TorqueError::NoSamples);
@@ -58,18 +54,9 @@ impl Samples {
     /// # Errors
     /// [`TorqueError::Joints`] if a slice does not have one entry per joint.
     pub fn push(&mut self, sample: Sample<'_>) -> Result<(), TorqueError> {
-        for (what, values) in [
-            ("q", sample.q),
-            ("qd", sample.qd),
-            ("qdd", sample.qdd),
-            ("tau", sample.tau),
-        ] {
+        for (what, values) in [("q", sample.q), ("qd", sample.qd), ("qdd", sample.qdd), ("tau", sample.tau)] {
             if values.len() != self.dof {
-                return Err(TorqueError::Joints {
-                    what: what.into(),
-                    found: values.len(),
-                    expected: self.dof,
-                });
+                return Err(TorqueError::Joints { what: what.into(), found: values.len(), expected: self.dof });
             }
         }
         self.q.extend_from_slice(sample.q);

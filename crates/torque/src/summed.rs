@@ -58,41 +58,13 @@ mod tests {
         let scale = |factor: f64| Effect::of(&InertialScale).with("factor", factor);
         let body = |mass: f64| Effect::of(&Payload).with("mass", mass).with("com", [0.1, 0.0, 0.0]);
         let list = [
-            (
-                on(&CoulombFriction).with("level", 2.0),
-                on(&CoulombFriction).with("level", 0.5),
-                1,
-            ),
-            (
-                on(&ViscousFriction).with("coefficient", 2.0),
-                on(&ViscousFriction).with("coefficient", 0.5),
-                1,
-            ),
-            (
-                on(&RotorInertia).with("inertia", 2.0),
-                on(&RotorInertia).with("inertia", 0.5),
-                1,
-            ),
-            (
-                on(&TorqueOffset).with("offset", 2.0),
-                on(&TorqueOffset).with("offset", -0.5),
-                1,
-            ),
-            (
-                on(&EncoderOffset).with("offset", 0.05),
-                on(&EncoderOffset).with("offset", -0.02),
-                1,
-            ),
-            (
-                on(&TorqueScale).with("factor", 1.1),
-                on(&TorqueScale).with("factor", 0.9),
-                1,
-            ),
-            (
-                on(&LinkInertialError).with("relative", 0.2),
-                on(&LinkInertialError).with("relative", -0.1),
-                1,
-            ),
+            (on(&CoulombFriction).with("level", 2.0), on(&CoulombFriction).with("level", 0.5), 1),
+            (on(&ViscousFriction).with("coefficient", 2.0), on(&ViscousFriction).with("coefficient", 0.5), 1),
+            (on(&RotorInertia).with("inertia", 2.0), on(&RotorInertia).with("inertia", 0.5), 1),
+            (on(&TorqueOffset).with("offset", 2.0), on(&TorqueOffset).with("offset", -0.5), 1),
+            (on(&EncoderOffset).with("offset", 0.05), on(&EncoderOffset).with("offset", -0.02), 1),
+            (on(&TorqueScale).with("factor", 1.1), on(&TorqueScale).with("factor", 0.9), 1),
+            (on(&LinkInertialError).with("relative", 0.2), on(&LinkInertialError).with("relative", -0.1), 1),
             (scale(1.2), scale(0.9), 1),
             (spring(3.0, 0.2), spring(-1.0, 0.5), 1),
             (drag(2.0), drag(2.0), 1),

@@ -19,11 +19,7 @@ fn no_control_step_allocates() {
         let model = Learned::on_top_of(&nominal, inputs, &samples(100, 0), &TrainingOptions::default());
         Box::new(model.expect("it trains"))
     };
-    let options = LagrangianOptions {
-        starts: 1,
-        max_iterations: 5,
-        ..LagrangianOptions::default()
-    };
+    let options = LagrangianOptions { starts: 1, max_iterations: 5, ..LagrangianOptions::default() };
     let energies = Lagrangian::on_top_of(&nominal, &samples(60, 0), &options).expect("it trains");
     let alone = Lagrangian::alone(&nominal, &samples(60, 0), &options).expect("it trains");
     let models: [(&str, Box<dyn TorqueModel>); 5] = [
@@ -34,13 +30,8 @@ fn no_control_step_allocates() {
         ("energies only", Box::new(alone)),
     ];
     for (name, model) in models {
-        let feedback = Feedback::MassMatrix {
-            kp: vec![100.0; 6],
-            kd: vec![20.0; 6],
-        };
-        let mut controller = Controller::new(model.as_ref(), nominal.clone(), feedback)
-            .expect("it fits")
-            .fading();
+        let feedback = Feedback::MassMatrix { kp: vec![100.0; 6], kd: vec![20.0; 6] };
+        let mut controller = Controller::new(model.as_ref(), nominal.clone(), feedback).expect("it fits").fading();
         let mut command = Command::new(6);
         let [q, qd, qdd] = motion(0.4, 0);
         let mut step = || {
@@ -60,19 +51,13 @@ fn no_control_step_allocates() {
 fn a_corrected_model_does_not_allocate() {
     let joint = || puma560().joints()[1].name.clone();
     let effects = [
-        Effect::of(&LoadDependentFriction)
-            .on(joint())
-            .with("coulomb", 1.0)
-            .with("gain", 0.1),
+        Effect::of(&LoadDependentFriction).on(joint()).with("coulomb", 1.0).with("gain", 0.1),
         Effect::of(&Spring)
             .on(joint())
             .with("stiffness", 1.0)
             .with("rest", 0.0)
             .with("curve", vec![[0.0, 0.0], [1.0, 2.0]]),
-        Effect::of(&ExternalContact)
-            .with("start", 0.0)
-            .with("duration", 1.0)
-            .with("force", [1.0, 2.0, 3.0]),
+        Effect::of(&ExternalContact).with("start", 0.0).with("duration", 1.0).with("force", [1.0, 2.0, 3.0]),
     ];
     let model = Corrected::new(&puma560(), &effects).expect("they are physical");
     let mut workspace = Workspace::new(6);

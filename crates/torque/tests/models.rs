@@ -31,12 +31,7 @@ fn scaled_inertias_scale_the_torque() {
     for joint in 0..6 {
         assert!((wrong[joint] / power[joint] - 0.04).abs() < 1e-9);
     }
-    assert!(
-        RigidBody::new(puma560())
-            .mean_squared_error(&tests)
-            .iter()
-            .all(|error| *error == 0.0)
-    );
+    assert!(RigidBody::new(puma560()).mean_squared_error(&tests).iter().all(|error| *error == 0.0));
 }
 
 /// Every learned model predicts its training samples. Fails if inputs and targets are mismatched.
@@ -45,19 +40,12 @@ fn learned_models_explain_their_training() {
     let train = samples(300, 0);
     let wrong = RigidBody::new(nominal()).mean_squared_error(&train);
     let gp_only = Learned::gp_only(&train, &TrainingOptions::default()).expect("it trains");
-    let models = [
-        gp_only,
-        learned(Inputs::JointMotion),
-        learned(Inputs::NewtonEuler12),
-        learned(Inputs::NewtonEuler13),
-    ];
+    let models =
+        [gp_only, learned(Inputs::JointMotion), learned(Inputs::NewtonEuler12), learned(Inputs::NewtonEuler13)];
     for model in models {
         let error = model.mean_squared_error(&train);
         for joint in 0..3 {
-            assert!(
-                error[joint] < 1e-6 * wrong[joint],
-                "joint {joint}: {error:?} of {wrong:?}"
-            );
+            assert!(error[joint] < 1e-6 * wrong[joint], "joint {joint}: {error:?} of {wrong:?}");
         }
     }
 }
@@ -83,19 +71,13 @@ fn newton_euler_inputs_transfer_to_another_task() {
 fn energies_transfer_to_another_task() {
     let (train, tests) = (samples(400, 0), samples(300, 1));
     let rigid = RigidBody::new(nominal()).mean_squared_error(&tests);
-    let options = LagrangianOptions {
-        starts: 2,
-        ..LagrangianOptions::default()
-    };
+    let options = LagrangianOptions { starts: 2, ..LagrangianOptions::default() };
     let on_top = Lagrangian::on_top_of(&nominal(), &train, &options).expect("it trains");
     let alone = Lagrangian::alone(&nominal(), &train, &options).expect("it trains");
     for (model, most) in [(&on_top, 5e-3), (&alone, 0.2)] {
         let error = model.mean_squared_error(&tests);
         for joint in 0..3 {
-            assert!(
-                error[joint] < most * rigid[joint],
-                "joint {joint}: {error:?} of {rigid:?}"
-            );
+            assert!(error[joint] < most * rigid[joint], "joint {joint}: {error:?} of {rigid:?}");
         }
         assert!((0..6).all(|joint| model.noise(joint) > 0.0));
         assert!(model.regressions().is_empty() && model.energies().is_some());
@@ -110,25 +92,17 @@ fn energies_fade_where_they_are_not_known() {
     let small = |time: f64| motion(time, 0).map(|part| part.iter().map(|value| 0.03 * value).collect::<Vec<_>>());
     let train = samples_of(300, small);
     let (mut workspace, mut below) = (Workspace::new(6), Prediction::new(6));
-    let options = LagrangianOptions {
-        starts: 1,
-        ..LagrangianOptions::default()
-    };
+    let options = LagrangianOptions { starts: 1, ..LagrangianOptions::default() };
     let rigid = RigidBody::new(nominal());
     for model in [
         Lagrangian::on_top_of(&nominal(), &train, &options).expect("it trains"),
         Lagrangian::alone(&nominal(), &train, &options).expect("it trains"),
     ] {
-        let gains = Feedback::Gains {
-            kp: vec![0.0; 6],
-            kd: vec![0.0; 6],
-        };
+        let gains = Feedback::Gains { kp: vec![0.0; 6], kd: vec![0.0; 6] };
         let mut plain = Prediction::new(6);
         let mut least = 1.0_f64;
         for ([q, qd, qdd], known) in [(small(100.0 / 80.0), true), (motion(1.0, 1), false)] {
-            let mut controller = Controller::new(&model, nominal(), gains.clone())
-                .expect("it fits")
-                .fading();
+            let mut controller = Controller::new(&model, nominal(), gains.clone()).expect("it fits").fading();
             let mut command = Command::new(6);
             controller.feed_forward(&q, &qd, &qdd, &mut command);
             model.predict(&mut workspace, &q, &qd, &qdd, &mut plain);
@@ -136,10 +110,7 @@ fn energies_fade_where_they_are_not_known() {
             for (joint, weight) in controller.weights().expect("it fades").iter().enumerate() {
                 let expected = below.rigid[joint] + weight * (plain.torque(joint) - below.rigid[joint]);
                 assert!((command.feedforward.torque(joint) - expected).abs() < 1e-9 * expected.abs().max(1.0));
-                assert!(
-                    (0.0..=1.0).contains(weight) && (!known || joint > 2 || *weight > 0.99),
-                    "{weight}"
-                );
+                assert!((0.0..=1.0).contains(weight) && (!known || joint > 2 || *weight > 0.99), "{weight}");
                 least = least.min(*weight);
             }
         }
@@ -153,26 +124,15 @@ fn variance_tells_how_far_the_data_are() {
     let model = learned(Inputs::NewtonEuler12);
     let mut workspace = Workspace::new(6);
     let mut at = |[q, qd, qdd]: [Vec<f64>; 3]| -> Vec<f64> {
-        model
-            .variance(&mut workspace, &q, &qd, &qdd)
-            .expect("it has one")
-            .to_vec()
+        model.variance(&mut workspace, &q, &qd, &qdd).expect("it has one").to_vec()
     };
     let near = at(motion(1.0, 0));
     let [q, qd, qdd] = motion(1.0, 0);
-    let far = at([
-        q,
-        qd.iter().map(|v| 20.0 * v).collect(),
-        qdd.iter().map(|a| 20.0 * a).collect(),
-    ]);
+    let far = at([q, qd.iter().map(|v| 20.0 * v).collect(), qdd.iter().map(|a| 20.0 * a).collect()]);
     assert!(near.iter().all(|v| *v >= 0.0));
     assert!((0..3).all(|joint| far[joint] > 100.0 * near[joint]), "{far:?} {near:?}");
     let [q, qd, qdd] = motion(1.0, 0);
-    assert!(
-        RigidBody::new(puma560())
-            .variance(&mut Workspace::new(6), &q, &qd, &qdd)
-            .is_none()
-    );
+    assert!(RigidBody::new(puma560()).variance(&mut Workspace::new(6), &q, &qd, &qdd).is_none());
 }
 
 #[test]
@@ -186,20 +146,10 @@ fn what_does_not_fit_is_refused() {
     assert!(matches!(other, Err(TorqueError::Joints { found: 5, .. })));
     let options = LagrangianOptions { starts: 0, ..options };
     let message = Lagrangian::alone(&puma560(), &samples(9, 0), &options).expect_err("it is refused");
-    assert_eq!(
-        message.to_string(),
-        "the energies cannot be learned: starts is 0: it must be at least 1"
-    );
+    assert_eq!(message.to_string(), "the energies cannot be learned: starts is 0: it must be at least 1");
     let model = RigidBody::new(puma560());
     let gains = |kp: Vec<f64>| Controller::new(&model, puma560(), Feedback::Gains { kp, kd: vec![1.0; 6] });
-    assert!(matches!(
-        gains(vec![1.0; 5]),
-        Err(TorqueError::Joints {
-            found: 5,
-            expected: 6,
-            ..
-        })
-    ));
+    assert!(matches!(gains(vec![1.0; 5]), Err(TorqueError::Joints { found: 5, expected: 6, .. })));
     let mut negative = vec![1.0; 6];
     negative[3] = -1.0;
     let message = gains(negative).err().expect("it is refused").to_string();
@@ -224,21 +174,13 @@ fn the_controller_feeds_back_and_saturates() {
         controller.feed_back(&q, &scaled, &rate, &mut command);
         command
     };
-    let command = run(
-        Feedback::MassMatrix {
-            kp: kp.clone(),
-            kd: kd.clone(),
-        },
-        1.0,
-    );
+    let command = run(Feedback::MassMatrix { kp: kp.clone(), kd: kd.clone() }, 1.0);
     let mut mass_matrix = DMatrix::zeros(6, 6);
     arm.mass_matrix(&mut arm::Workspace::new(&arm), &q, &mut mass_matrix);
     let mut prediction = Prediction::new(6);
     model.predict(&mut Workspace::new(6), &q, &qd, &qdd, &mut prediction);
     for i in 0..6 {
-        let expected: f64 = (0..6)
-            .map(|j| mass_matrix[(i, j)] * (100.0 * error[j] + 20.0 * rate[j]))
-            .sum();
+        let expected: f64 = (0..6).map(|j| mass_matrix[(i, j)] * (100.0 * error[j] + 20.0 * rate[j])).sum();
         assert!((command.feedback[i] - expected).abs() < 1e-12);
         assert!((command.torque[i] - expected - prediction.rigid[i]).abs() < 1e-12);
         assert!(!command.saturated[i]);
@@ -262,17 +204,12 @@ fn a_learned_torque_fades_where_it_knows_nothing() {
     let alone = Learned::gp_only(&train, &TrainingOptions::default()).expect("it trains");
     for model in [on_top, alone] {
         let rigid = RigidBody::new(nominal());
-        let gains = Feedback::Gains {
-            kp: vec![0.0; 6],
-            kd: vec![0.0; 6],
-        };
+        let gains = Feedback::Gains { kp: vec![0.0; 6], kd: vec![0.0; 6] };
         let mut workspace = Workspace::new(6);
         let (mut plain, mut below) = (Prediction::new(6), Prediction::new(6));
         let mut smallest = [1.0_f64; 6];
         for speed in [1.0, 2.0, 4.0, 100.0] {
-            let mut controller = Controller::new(&model, nominal(), gains.clone())
-                .expect("it fits")
-                .fading();
+            let mut controller = Controller::new(&model, nominal(), gains.clone()).expect("it fits").fading();
             let mut command = Command::new(6);
             let [q, qd, qdd] = motion(1.0, 0);
             let qd: Vec<f64> = qd.iter().map(|v| speed * v).collect();
@@ -286,10 +223,7 @@ fn a_learned_torque_fades_where_it_knows_nothing() {
                 let expected = below.rigid[joint] + weight * (plain.torque(joint) - below.rigid[joint]);
                 assert!((command.feedforward.torque(joint) - expected).abs() < 1e-9 * expected.abs().max(1.0));
                 assert!((0.0..=1.0).contains(&weight));
-                assert!(
-                    weight <= smallest[joint] + 0.2,
-                    "{weights:?} at {speed}, {smallest:?} before"
-                );
+                assert!(weight <= smallest[joint] + 0.2, "{weights:?} at {speed}, {smallest:?} before");
                 smallest[joint] = smallest[joint].min(weight);
                 if speed == 1.0 {
                     assert!(joint > 2 || weight == 1.0, "{weights:?}");
@@ -306,10 +240,7 @@ fn a_learned_torque_fades_where_it_knows_nothing() {
 #[test]
 fn one_weight_is_renewed_in_a_step() {
     let model = learned(Inputs::NewtonEuler13);
-    let gains = Feedback::Gains {
-        kp: vec![0.0; 6],
-        kd: vec![0.0; 6],
-    };
+    let gains = Feedback::Gains { kp: vec![0.0; 6], kd: vec![0.0; 6] };
     let mut controller = Controller::new(&model, nominal(), gains).expect("it fits").fading();
     let mut command = Command::new(6);
     let [q, qd, qdd] = motion(1.0, 0);

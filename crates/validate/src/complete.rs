@@ -54,10 +54,7 @@ pub fn complete(
     // The friction of a joint that no training recording moves is unknown.
     let training = || diagnosis.traces.recordings.iter().filter(|trace| !trace.held_out);
     let never_moves = |joint: usize| !training().any(|trace| trace.moving[joint].iter().any(|&moving| moving));
-    let options = RolloutOptions {
-        guided: (0..arm.dof()).map(never_moves).collect(),
-        ..RolloutOptions::default()
-    };
+    let options = RolloutOptions { guided: (0..arm.dof()).map(never_moves).collect(), ..RolloutOptions::default() };
     let remarks = simulated.map_or_else(Vec::new, |input| {
         // Known effects are part of the model to which the findings are added.
         let corrected = [known, &diagnosis.effects].concat();
@@ -67,24 +64,14 @@ pub fn complete(
 }
 
 fn motion(trace: &Trace) -> RecordedMotion<'_> {
-    RecordedMotion {
-        q: &trace.q,
-        qd: &trace.qd,
-        qdd: &trace.qdd,
-        tau: &trace.tau,
-        moving: &trace.moving,
-    }
+    RecordedMotion { q: &trace.q, qd: &trace.qd, qdd: &trace.qdd, tau: &trace.tau, moving: &trace.moving }
 }
 
 /// Adds the held-out error of a correction learned from the same recordings.
 fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), ValidateError> {
     let of = |held_out: bool| -> Vec<&Trace> { traces.iter().filter(|trace| trace.held_out == held_out).collect() };
     let (train, held) = (of(false), of(true));
-    let moves = |traces: &[&Trace]| {
-        traces
-            .iter()
-            .any(|trace| trace.moving.iter().flatten().any(|&moving| moving))
-    };
+    let moves = |traces: &[&Trace]| traces.iter().any(|trace| trace.moving.iter().flatten().any(|&moving| moving));
     if held.is_empty() || !moves(&train) {
         return Ok(());
     }
@@ -93,10 +80,7 @@ fn learn(arm: &Arm, traces: &[Trace], report: &mut Report) -> Result<(), Validat
     let predicted = learned::predict(arm, &training, &tried, &LearnedOptions::default())?;
     for (joint, described) in arm.joints().iter().enumerate() {
         // The samples in motion, as for the other errors; all samples where the joint hardly moves.
-        let moving: usize = held
-            .iter()
-            .map(|trace| trace.moving[joint].iter().filter(|&&m| m).count())
-            .sum();
+        let moving: usize = held.iter().map(|trace| trace.moving[joint].iter().filter(|&&m| m).count()).sum();
         let (mut torques, mut misses) = (Vec::new(), Vec::new());
         for (trace, prediction) in held.iter().zip(&predicted) {
             for (row, tau) in trace.tau[joint].iter().enumerate() {
@@ -151,10 +135,7 @@ fn simulate(
         ));
     }
     let windows = result.windows.len();
-    for (name, count) in [
-        ("nominal", result.runaway_nominal),
-        ("corrected", result.runaway_augmented),
-    ] {
+    for (name, count) in [("nominal", result.runaway_nominal), ("corrected", result.runaway_augmented)] {
         if count > 0 {
             remarks.push(format!(
                 "the {name} arm departs from the recorded motion by more than one revolution or one metre in {count} of {windows} windows; the windows end there"

@@ -34,12 +34,7 @@ impl Default for LearnedOptions {
     fn default() -> Self {
         Self {
             samples: 150,
-            training: TrainingOptions {
-                lengths: LengthScales::PerInput,
-                starts: 1,
-                max_iterations: 8,
-                inducing: None,
-            },
+            training: TrainingOptions { lengths: LengthScales::PerInput, starts: 1, max_iterations: 8, inducing: None },
         }
     }
 }
@@ -76,9 +71,7 @@ pub fn learn(arm: &Arm, training: &[RecordedMotion<'_>], options: &LearnedOption
             RecordedMotion::row(signal, row, into);
         }
         let [q, qd, qdd, tau] = &row_of;
-        samples
-            .push(Sample { q, qd, qdd, tau })
-            .map_err(ValidateError::Learning)?;
+        samples.push(Sample { q, qd, qdd, tau }).map_err(ValidateError::Learning)?;
     }
     Learned::on_top_of(arm, Inputs::NewtonEuler13, &samples, &options.training).map_err(ValidateError::Learning)
 }
@@ -134,9 +127,7 @@ fn training_rows(training: &[RecordedMotion<'_>], samples: usize) -> Vec<(usize,
         rows = rows_where(&|motion, row| movers.iter().any(|&joint| motion.moving[joint][row]));
     }
     let count = samples.min(rows.len());
-    (0..count)
-        .map(|k| rows[(2 * k + 1) * rows.len() / (2 * count)])
-        .collect()
+    (0..count).map(|k| rows[(2 * k + 1) * rows.len() / (2 * count)]).collect()
 }
 
 #[cfg(test)]
@@ -181,13 +172,7 @@ mod tests {
 
         fn motion(&self) -> RecordedMotion<'_> {
             let [q, qd, qdd, tau] = &self.0;
-            RecordedMotion {
-                q,
-                qd,
-                qdd,
-                tau,
-                moving: &self.1,
-            }
+            RecordedMotion { q, qd, qdd, tau, moving: &self.1 }
         }
     }
 
@@ -202,11 +187,8 @@ mod tests {
     #[test]
     fn friction_is_learned() {
         let arm = puma();
-        let viscous = |joint: usize| {
-            Effect::of(&ViscousFriction)
-                .on(arm.joints()[joint].name.clone())
-                .with("coefficient", 8.0)
-        };
+        let viscous =
+            |joint: usize| Effect::of(&ViscousFriction).on(arm.joints()[joint].name.clone()).with("coefficient", 8.0);
         let effects: Vec<Effect> = (0..6).map(viscous).collect();
         let truth = Corrected::new(&arm, &effects).expect("they are physical");
         let training = [Data::new(&truth, 2500, 0.0), Data::new(&truth, 2500, 0.05)];

@@ -40,13 +40,7 @@ pub struct RolloutOptions {
 
 impl Default for RolloutOptions {
     fn default() -> Self {
-        Self {
-            window: 0.25,
-            simulated: 6.0,
-            step: 2e-3,
-            order: 2,
-            guided: Vec::new(),
-        }
+        Self { window: 0.25, simulated: 6.0, step: 2e-3, order: 2, guided: Vec::new() }
     }
 }
 
@@ -112,9 +106,7 @@ pub fn rollout(
         .iter()
         .map(|joint| {
             let found = recording.joints.iter().position(|name| *name == joint.name);
-            found.ok_or_else(|| ValidateError::Joint {
-                joint: joint.name.clone(),
-            })
+            found.ok_or_else(|| ValidateError::Joint { joint: joint.name.clone() })
         })
         .collect::<Result<Vec<usize>, _>>()?;
     let period = recording.period;
@@ -154,10 +146,8 @@ pub fn rollout(
         }
         Ok(Run { paths, remarks })
     };
-    let (nominal, augmented) = rayon::join(
-        || run("the nominal arm", nominal),
-        || run("the arm with the effects found", augmented),
-    );
+    let (nominal, augmented) =
+        rayon::join(|| run("the nominal arm", nominal), || run("the arm with the effects found", augmented));
     let (nominal, augmented) = (nominal?, augmented?);
 
     let mut result = Rollout {
@@ -173,11 +163,7 @@ pub fn rollout(
         }
         let ticks = || (0..common).map(|k| start.tick + k * stride);
         result.windows.push(Window {
-            measured: course
-                .columns
-                .iter()
-                .map(|&c| ticks().map(|tick| recording.q[c][tick]).collect())
-                .collect(),
+            measured: course.columns.iter().map(|&c| ticks().map(|tick| recording.q[c][tick]).collect()).collect(),
             nominal: nominal.q,
             augmented: augmented.q,
         });

@@ -77,10 +77,7 @@ fn tree(tokens: &[String], mut at: usize, before: &[String], is_exported: bool, 
         name = tokens.get(at + 1).cloned();
         at += 2;
     }
-    found.push(Used {
-        exported_as: name.filter(|_| is_exported),
-        path,
-    });
+    found.push(Used { exported_as: name.filter(|_| is_exported), path });
     at
 }
 
@@ -106,10 +103,7 @@ fn modules(source: &Path) -> BTreeMap<Module, String> {
     super::rust_files(source, &mut files);
     let mut modules = BTreeMap::new();
     for file in files {
-        let place = file
-            .strip_prefix(source)
-            .expect("the file is in the folder")
-            .with_extension("");
+        let place = file.strip_prefix(source).expect("the file is in the folder").with_extension("");
         let mut module: Module = place.iter().map(|part| part.to_string_lossy().into_owned()).collect();
         let is_root = ["lib", "main"].iter().any(|root| module == [root.to_owned()]);
         if is_root || module.last().is_some_and(|last| last == "mod") {
@@ -120,9 +114,7 @@ fn modules(source: &Path) -> BTreeMap<Module, String> {
     let is_test = |module: &Module| {
         (1..=module.len()).any(|depth| {
             let (name, parent) = (&module[depth - 1], &module[..depth - 1]);
-            modules
-                .get(parent)
-                .is_some_and(|text: &String| text.contains(&format!("#[cfg(test)]\nmod {name};")))
+            modules.get(parent).is_some_and(|text: &String| text.contains(&format!("#[cfg(test)]\nmod {name};")))
         })
     };
     let tests: BTreeSet<Module> = modules.keys().filter(|module| is_test(module)).cloned().collect();
@@ -160,9 +152,7 @@ fn uses(modules: &BTreeMap<Module, String>) -> BTreeMap<Module, BTreeMap<Module,
     let defined = |path: Vec<String>| -> Module {
         let mut path = path;
         for _ in 0..8 {
-            let known = (0..=path.len())
-                .rev()
-                .find(|&depth| modules.contains_key(&path[..depth]));
+            let known = (0..=path.len()).rev().find(|&depth| modules.contains_key(&path[..depth]));
             let depth = known.unwrap_or(0);
             let next = path.get(..=depth).and_then(|named| exports.get(named));
             match next {
@@ -174,10 +164,7 @@ fn uses(modules: &BTreeMap<Module, String>) -> BTreeMap<Module, BTreeMap<Module,
     };
     let mut uses: BTreeMap<Module, BTreeMap<Module, String>> = BTreeMap::new();
     for (module, list) in &of_files {
-        for used in list
-            .iter()
-            .filter(|used| used.exported_as.is_none() || !module.is_empty())
-        {
+        for used in list.iter().filter(|used| used.exported_as.is_none() || !module.is_empty()) {
             let Some(path) = absolute(module, &used.path) else {
                 continue;
             };
@@ -241,11 +228,7 @@ fn a_circle_is_found_through_names_that_are_passed_on() {
     ];
     let modules = |c: &str| -> BTreeMap<Module, String> {
         let named = texts.iter().map(|(module, text)| {
-            let module: Module = module
-                .split('/')
-                .filter(|part| !part.is_empty())
-                .map(str::to_owned)
-                .collect();
+            let module: Module = module.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect();
             (module, (*text).to_owned())
         });
         named.chain([(vec!["c".to_owned()], c.to_owned())]).collect()

@@ -54,10 +54,7 @@ pub(crate) fn sin_cos<T: Real>(context: T::Context, angle: T) -> (T, T) {
     let remainder = pairs - two * rounded(half * pairs);
     let sign = one - two * remainder * remainder;
     let even = one - odd;
-    (
-        sign * (sin * even + cos * odd),
-        sign * (even - odd) * (cos * even + sin * odd),
-    )
+    (sign * (sin * even + cos * odd), sign * (even - odd) * (cos * even + sin * odd))
 }
 
 /// A polynomial with the given coefficients, of which the first is constant.
@@ -87,10 +84,7 @@ mod tests {
         for quarters in -20..=20 {
             let angle = f64::from(quarters) * std::f64::consts::FRAC_PI_2;
             let (sin, cos) = sin_cos((), angle);
-            assert!(
-                (sin - angle.sin()).abs() <= 2e-16 && (cos - angle.cos()).abs() <= 2e-16,
-                "{angle}"
-            );
+            assert!((sin - angle.sin()).abs() <= 2e-16 && (cos - angle.cos()).abs() <= 2e-16, "{angle}");
         }
         assert_eq!(sin_cos((), 0.0), (0.0, 1.0));
         assert!(sin_cos((), f64::NAN).0.is_nan() && sin_cos((), f64::INFINITY).1.is_nan());

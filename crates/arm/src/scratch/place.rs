@@ -16,10 +16,7 @@ pub(crate) struct Place<T> {
 impl<T: Real> Place<T> {
     /// The identity.
     pub fn zeros(context: T::Context) -> Self {
-        Self {
-            rotation: Mat3::zeros(context),
-            translation: Vec3::zeros(context),
-        }
+        Self { rotation: Mat3::zeros(context), translation: Vec3::zeros(context) }
     }
 
     /// [`Joint::parent_from_link`] at q.
@@ -32,10 +29,7 @@ impl<T: Real> Place<T> {
                 let [r0, r1, r2] = &joint.rotation_terms;
                 let (r0, r1) = (Mat3::constant(context, r0), Mat3::constant(context, r1));
                 let r2 = Mat3::constant(context, r2);
-                Self {
-                    rotation: r0 + r1 * sin + r2 * (T::constant(context, 1.0) - cos),
-                    translation: at,
-                }
+                Self { rotation: r0 + r1 * sin + r2 * (T::constant(context, 1.0) - cos), translation: at }
             }
             JointKind::Prismatic => Self {
                 rotation: Mat3::constant(context, &joint.rotation_terms[0]),

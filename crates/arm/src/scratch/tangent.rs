@@ -32,19 +32,13 @@ impl<T: Real> Spatial<T> {
     /// Motion cross product v × m: the rate of change of the motion `m` that is fixed to a body with this twist.
     #[inline(always)]
     pub fn cross(&self, motion: &Self) -> Self {
-        Self(
-            cross(&self.0, &motion.0),
-            cross(&self.0, &motion.1) + cross(&self.1, &motion.0),
-        )
+        Self(cross(&self.0, &motion.0), cross(&self.0, &motion.1) + cross(&self.1, &motion.0))
     }
 
     /// Force cross product v ×* f: the rate of change of the wrench `f` that is fixed to a body with this twist.
     #[inline(always)]
     pub fn cross_wrench(&self, wrench: &Self) -> Self {
-        Self(
-            cross(&self.0, &wrench.0) + cross(&self.1, &wrench.1),
-            cross(&self.0, &wrench.1),
-        )
+        Self(cross(&self.0, &wrench.0) + cross(&self.1, &wrench.1), cross(&self.0, &wrench.1))
     }
 }
 
@@ -87,20 +81,14 @@ impl<T: Real> Body<T> {
     #[inline(always)]
     pub fn inertia_times(&self, x: &Spatial<T>) -> Spatial<T> {
         let turned = x.0 * self.second.trace() - mul(&self.second, &x.0);
-        Spatial(
-            turned + cross(&self.first, &x.1),
-            x.1 * self.mass + cross(&x.0, &self.first),
-        )
+        Spatial(turned + cross(&self.first, &x.1), x.1 * self.mass + cross(&x.0, &self.first))
     }
 
     /// ∫ (r ×; 1) 2 x × v dm of a turn x: x ×* I v + v ×* I x − I (v × x) of any motion with that angular part.
     #[inline(always)]
     pub fn coriolis_times(&self, context: T::Context, x: &Vec3<T>) -> Spatial<T> {
         let two = T::constant(context, 2.0);
-        Spatial(
-            (*x * self.flow.trace() - mul(&self.flow, x)) * two,
-            cross(x, &self.momentum) * two,
-        )
+        Spatial((*x * self.flow.trace() - mul(&self.flow, x)) * two, cross(x, &self.momentum) * two)
     }
 
     /// The e with e · x = s · [`Self::coriolis_times`] x.
@@ -127,12 +115,6 @@ impl<T: Real> Tangent<T> {
     #[inline(always)]
     pub fn zeros(context: T::Context) -> Self {
         let zero = Spatial::zeros(context);
-        Self {
-            unit: zero,
-            velocity: zero,
-            acceleration: zero,
-            by_speed: zero,
-            body: Body::none(context),
-        }
+        Self { unit: zero, velocity: zero, acceleration: zero, by_speed: zero, body: Body::none(context) }
     }
 }

@@ -51,11 +51,7 @@ impl<'a> Reader<'a> {
         if self.robot.links.is_empty() {
             return Err(self.robot_error("has no links".into(), "is this a URDF?"));
         }
-        let mut roots = self
-            .robot
-            .links
-            .iter()
-            .filter(|link| !children.contains(link.name.as_str()));
+        let mut roots = self.robot.links.iter().filter(|link| !children.contains(link.name.as_str()));
         let Some(root) = roots.next() else {
             let into_first = |joint: &&urdf_rs::Joint| joint.child.link == self.robot.links[0].name;
             let closing = self.robot.joints.iter().find(into_first);
@@ -72,10 +68,7 @@ impl<'a> Reader<'a> {
         if let Some(other) = roots.next() {
             return Err(self.link_error(
                 &other.name,
-                format!(
-                    "is the child of no joint, and so is link \"{}\": a robot has one root",
-                    root.name
-                ),
+                format!("is the child of no joint, and so is link \"{}\": a robot has one root", root.name),
                 "join the two parts, or remove one",
             ));
         }
@@ -86,12 +79,7 @@ impl<'a> Reader<'a> {
             let from_here = self.robot.joints.iter().filter(|joint| joint.parent.link == name);
             waiting.extend(from_here.map(|joint| joint.child.link.as_str()));
         }
-        match self
-            .robot
-            .joints
-            .iter()
-            .find(|joint| !reached.contains(joint.child.link.as_str()))
-        {
+        match self.robot.joints.iter().find(|joint| !reached.contains(joint.child.link.as_str())) {
             Some(joint) => Err(self.joint_error(
                 joint,
                 "is part of a loop that does not reach the base".into(),
@@ -114,10 +102,7 @@ impl<'a> Reader<'a> {
         if moments[0] < -1e-6 * scale {
             return Err(self.link_error(
                 &joint.link_name,
-                format!(
-                    "has the principal moment of inertia {:.6} kg m², which is negative",
-                    moments[0]
-                ),
+                format!("has the principal moment of inertia {:.6} kg m², which is negative", moments[0]),
                 "check ixx … izz, and their frame",
             ));
         }

@@ -40,10 +40,7 @@ impl Chain<'_> {
 type Joints<'a> = Vec<&'a urdf_rs::Joint>;
 
 fn is_movable(joint: &urdf_rs::Joint) -> bool {
-    matches!(
-        joint.joint_type,
-        JointType::Revolute | JointType::Continuous | JointType::Prismatic
-    )
+    matches!(joint.joint_type, JointType::Revolute | JointType::Continuous | JointType::Prismatic)
 }
 
 pub(super) fn kind(joint: &urdf_rs::Joint) -> JointKind {
@@ -76,21 +73,12 @@ fn choice(base: &str, start: usize, way: &[&urdf_rs::Joint]) -> String {
         let tip = &last.child.link;
         match joints {
             [_] => format!("--base {base} --tip {tip} (1 joint: {})", last.name),
-            _ => format!(
-                "--base {base} --tip {tip} ({} joints: {} … {})",
-                joints.len(),
-                joints[0].name,
-                last.name
-            ),
+            _ => format!("--base {base} --tip {tip} ({} joints: {} … {})", joints.len(), joints[0].name, last.name),
         }
     };
     match start {
         0 => flags(base, way),
-        _ => format!(
-            "{} or {}",
-            flags(&way[start].parent.link, &way[start..]),
-            flags(base, way)
-        ),
+        _ => format!("{} or {}", flags(&way[start].parent.link, &way[start..]), flags(base, way)),
     }
 }
 
@@ -100,15 +88,8 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// If a link or joint in `options` does not exist, or if several chains are possible; the error lists their tips.
     pub(super) fn choose(&self, root: &'a str, options: &ChainOptions) -> Result<Chain<'a>, ArmError> {
-        let base = options
-            .base
-            .as_deref()
-            .map_or(Ok(root), |name| self.link(name, "--base"))?;
-        let tip = options
-            .tip
-            .as_deref()
-            .map(|name| self.link(name, "--tip"))
-            .transpose()?;
+        let base = options.base.as_deref().map_or(Ok(root), |name| self.link(name, "--base"))?;
+        let tip = options.tip.as_deref().map(|name| self.link(name, "--tip")).transpose()?;
         self.check_locks(options)?;
         let locked = |joint: &urdf_rs::Joint| options.locks.iter().any(|(name, _)| *name == joint.name);
         let can_move = |joint: &urdf_rs::Joint| is_movable(joint) && joint.mimic.is_none() && !locked(joint);
@@ -139,13 +120,7 @@ impl<'a> Reader<'a> {
             }
         };
         self.check_kinds(base, &moving)?;
-        let mut chain = Chain {
-            base,
-            tip,
-            fixed: Vec::new(),
-            warnings: Vec::new(),
-            positions: HashMap::new(),
-        };
+        let mut chain = Chain { base, tip, fixed: Vec::new(), warnings: Vec::new(), positions: HashMap::new() };
         let names = |list: &Joints<'_>, joint: &urdf_rs::Joint| list.iter().any(|other| other.name == joint.name);
         for joint in self.robot.joints.iter().filter(|joint| !names(&moving, joint)) {
             let lock = options.locks.iter().find(|(name, _)| *name == joint.name);
@@ -252,20 +227,12 @@ impl<'a> Reader<'a> {
     /// if all joints have such names, none counts as one.
     fn grippers(&self, base: &str, joints: Joints<'a>) -> (Joints<'a>, Joints<'a>) {
         let is_beyond = |joint: &urdf_rs::Joint, other: &urdf_rs::Joint| {
-            self.path(&other.child.link, base)
-                .is_some_and(|path| path.iter().any(|on_way| on_way.name == joint.name))
+            self.path(&other.child.link, base).is_some_and(|path| path.iter().any(|on_way| on_way.name == joint.name))
         };
-        let (grippers, others): (Joints<'a>, Joints<'a>) = joints.iter().partition(|joint| {
-            joints
-                .iter()
-                .filter(|other| is_beyond(joint, other))
-                .all(|other| is_gripper(other))
-        });
-        if others.is_empty() {
-            (others, joints)
-        } else {
-            (grippers, others)
-        }
+        let (grippers, others): (Joints<'a>, Joints<'a>) = joints
+            .iter()
+            .partition(|joint| joints.iter().filter(|other| is_beyond(joint, other)).all(|other| is_gripper(other)));
+        if others.is_empty() { (others, joints) } else { (grippers, others) }
     }
 
     /// The recorded joints, and the joints between two of them, which are missing in the recording and not fixed. All
@@ -286,10 +253,7 @@ impl<'a> Reader<'a> {
                 at.is_some_and(|at| way[..at].iter().any(|before| is_recorded(before)))
             })
         };
-        joints
-            .into_iter()
-            .filter(|joint| is_recorded(joint) || is_between(joint))
-            .collect()
+        joints.into_iter().filter(|joint| is_recorded(joint) || is_between(joint)).collect()
     }
 
     /// Refuses joints that do not form one chain; the error lists the unbranched runs of joints, the longest first.
@@ -323,11 +287,8 @@ impl<'a> Reader<'a> {
             })
             .collect();
         runs.sort_by_key(|(start, way)| (std::cmp::Reverse(way.len() - start), *start));
-        let mut choices: Vec<String> = runs
-            .iter()
-            .take(MOST_RUNS)
-            .map(|(start, way)| choice(base, *start, way))
-            .collect();
+        let mut choices: Vec<String> =
+            runs.iter().take(MOST_RUNS).map(|(start, way)| choice(base, *start, way)).collect();
         if runs.len() > MOST_RUNS {
             choices.push(format!("and {} more", runs.len() - MOST_RUNS));
         }

@@ -19,33 +19,22 @@ const LEAST_LEFT: f64 = 1e-9;
 /// The bodies that could be taken off a link of mass `total` (kg): each of its fixed links with all that it carries, where some
 /// mass is left and where no link beyond it is the same body.
 pub(super) fn removable(attached: &[Attached], total: f64) -> Vec<FixedBody> {
-    let mut list: Vec<FixedBody> = attached
-        .iter()
-        .map(|link| FixedBody {
-            name: link.name.clone(),
-            inertia: link.inertia,
-        })
-        .collect();
+    let mut list: Vec<FixedBody> =
+        attached.iter().map(|link| FixedBody { name: link.name.clone(), inertia: link.inertia }).collect();
     for (place, link) in attached.iter().enumerate().rev() {
         if let Some(carrier) = link.carried_by {
             list[carrier].inertia = list[carrier].inertia.merged(&list[place].inertia);
         }
     }
     let is_alone = |place: usize| {
-        let mut beyond = attached
-            .iter()
-            .zip(&list)
-            .filter(|(link, _)| link.carried_by == Some(place));
+        let mut beyond = attached.iter().zip(&list).filter(|(link, _)| link.carried_by == Some(place));
         beyond.all(|(_, other)| other.inertia.mass < list[place].inertia.mass)
     };
     let is_removable = |place: &usize| {
         let mass = list[*place].inertia.mass;
         mass > 0.0 && mass < (1.0 - LEAST_LEFT) * total && is_alone(*place)
     };
-    (0..list.len())
-        .filter(is_removable)
-        .map(|place| list[place].clone())
-        .collect()
+    (0..list.len()).filter(is_removable).map(|place| list[place].clone()).collect()
 }
 
 #[cfg(test)]
@@ -70,11 +59,8 @@ mod tests {
             inertial(0.1)
         );
         let arm = Arm::from_urdf_text(&text, "a.urdf").expect("it is an arm");
-        let bodies: Vec<(&str, f64)> = arm
-            .fixed_bodies()
-            .iter()
-            .map(|body| (body.name.as_str(), body.inertia.mass))
-            .collect();
+        let bodies: Vec<(&str, f64)> =
+            arm.fixed_bodies().iter().map(|body| (body.name.as_str(), body.inertia.mass)).collect();
         // The flange has no mass of its own: it is the hand.
         assert_eq!(bodies, [("hand", 0.6), ("camera", 0.1)]);
     }

@@ -48,9 +48,7 @@ impl Inertia {
 }
 
 fn unreadable(reason: impl Display) -> ArmError {
-    ArmError::Inertial {
-        reason: reason.to_string(),
-    }
+    ArmError::Inertial { reason: reason.to_string() }
 }
 
 /// Fills `target` with the numbers of an attribute, as far as there are any.
@@ -60,9 +58,7 @@ fn fill(tag: &BytesStart<'_>, name: &str, target: &mut [f64]) -> Result<(), ArmE
     };
     let text = attribute.unescape_value().map_err(unreadable)?;
     for (target, word) in target.iter_mut().zip(text.split_whitespace()) {
-        *target = word
-            .parse()
-            .map_err(|_| unreadable(format!("{name}: \"{word}\" is not a number")))?;
+        *target = word.parse().map_err(|_| unreadable(format!("{name}: \"{word}\" is not a number")))?;
     }
     Ok(())
 }
@@ -88,11 +84,7 @@ impl Attributes {
     fn body(&self) -> Inertia {
         let [mass] = self.mass;
         let [xx, xy, xz, yy, yz, zz] = self.tensor;
-        let centred = Inertia {
-            mass,
-            com: Vector3::zeros(),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
-        };
+        let centred = Inertia { mass, com: Vector3::zeros(), tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) };
         centred.transformed(&Pose::from_xyz_rpy(self.xyz, self.rpy))
     }
 }

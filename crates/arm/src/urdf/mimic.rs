@@ -62,11 +62,7 @@ impl<'a> Reader<'a> {
 
     /// Whether `joint` is between the base and a moving joint or the chosen tip.
     fn is_on_way(&self, joint: &urdf_rs::Joint, chain: &Chain<'a>) -> bool {
-        let moving = self
-            .robot
-            .joints
-            .iter()
-            .filter(|other| chain.position(&other.name).is_none());
+        let moving = self.robot.joints.iter().filter(|other| chain.position(&other.name).is_none());
         let ends = moving.map(|other| other.child.link.as_str()).chain(chain.tip);
         let mut ways = ends.filter_map(|end| self.path(end, chain.base));
         ways.any(|way| way.iter().any(|on_way| on_way.name == joint.name))
@@ -88,22 +84,13 @@ impl<'a> Reader<'a> {
     /// The error for a joint that follows a moving one; `others` do so, too.
     fn follows_moving(&self, first: &Follower<'_>, others: &[Follower<'_>], is_recorded: bool) -> ArmError {
         let Follower { joint, mimicked, name } = first;
-        let followed = if name == mimicked {
-            format!("\"{name}\"")
-        } else {
-            format!("\"{mimicked}\", which follows \"{name}\"")
-        };
+        let followed =
+            if name == mimicked { format!("\"{name}\"") } else { format!("\"{mimicked}\", which follows \"{name}\"") };
         let lock = format!("fix it with --lock {}=VALUE", joint.name);
         let (recorded, mut remedy) = if is_recorded {
-            (
-                "is recorded, and ",
-                format!("delete its <mimic> if it has a drive of its own, or {lock}"),
-            )
+            ("is recorded, and ", format!("delete its <mimic> if it has a drive of its own, or {lock}"))
         } else {
-            (
-                "",
-                format!("{lock} if its motion matters little, or delete its <mimic> if it has a drive of its own"),
-            )
+            ("", format!("{lock} if its motion matters little, or delete its <mimic> if it has a drive of its own"))
         };
         if !others.is_empty() {
             let names: Vec<&str> = others.iter().map(|other| other.joint.name.as_str()).collect();

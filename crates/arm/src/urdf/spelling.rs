@@ -20,11 +20,7 @@ const fn element(
     children: &'static [&'static str],
     attributes: &'static [&'static str],
 ) -> Element {
-    Element {
-        name,
-        children,
-        attributes,
-    }
+    Element { name, children, attributes }
 }
 
 /// The elements that decide on the dynamics. Each is looked at in the place that URDF gives it only, so that a `<joint>`
@@ -36,11 +32,7 @@ const ELEMENTS: [Element; 13] = [
     element("mass", &[], &["value"]),
     element("inertia", &[], &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]),
     element("origin", &[], &["xyz", "rpy"]),
-    element(
-        "joint",
-        &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"],
-        &["name", "type"],
-    ),
+    element("joint", &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"], &["name", "type"]),
     element("parent", &[], &["link"]),
     element("child", &[], &["link"]),
     element("axis", &[], &["xyz"]),
@@ -50,15 +42,7 @@ const ELEMENTS: [Element; 13] = [
 ];
 
 /// The types of joints that URDF has.
-const TYPES: [&str; 7] = [
-    "revolute",
-    "continuous",
-    "prismatic",
-    "fixed",
-    "floating",
-    "planar",
-    "spherical",
-];
+const TYPES: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
 /// The element `name`, if it decides on the dynamics.
 pub(super) fn known(name: &str) -> Option<&'static Element> {
@@ -113,9 +97,7 @@ fn enter(
         Some(None) => return Ok(None),
         Some(Some((parent, words))) if !parent.children.contains(&name.as_str()) => {
             return match nearest(&name, parent.children.iter().copied()) {
-                Some(meant) => Err(format!(
-                    "{words} has an unknown element <{name}>; did you mean <{meant}>?"
-                )),
+                Some(meant) => Err(format!("{words} has an unknown element <{name}>; did you mean <{meant}>?")),
                 None => Ok(None),
             };
         }

@@ -94,11 +94,7 @@ impl Text {
             return Err(syntax_error(path, None, reason));
         };
         blanks.sort_by_key(|range| range.start);
-        Ok(Self {
-            blanked: blanked(text, &blanks),
-            root,
-            elements,
-        })
+        Ok(Self { blanked: blanked(text, &blanks), root, elements })
     }
 
     /// The parser's error with its place: the first element of the robot that does not parse by itself.
@@ -117,11 +113,7 @@ impl Text {
             let reason = "the file ends before </robot>: it was cut; write or copy it again".into();
             return syntax_error(path, Some(last), reason);
         }
-        syntax_error(
-            path,
-            None,
-            format!("is not a URDF: {}; check it with check_urdf", why::plain(error)),
-        )
+        syntax_error(path, None, format!("is not a URDF: {}; check it with check_urdf", why::plain(error)))
     }
 }
 
@@ -149,18 +141,11 @@ fn check_root(tag: &BytesStart<'_>) -> Result<(), String> {
 fn is_xacro(tag: &BytesStart<'_>) -> bool {
     let is_expression = |value: &[u8]| value.windows(2).any(|pair| pair == b"${" || pair == b"$(");
     tag.name().as_ref().starts_with(b"xacro:")
-        || tag
-            .attributes()
-            .with_checks(false)
-            .flatten()
-            .any(|attribute| is_expression(&attribute.value))
+        || tag.attributes().with_checks(false).flatten().any(|attribute| is_expression(&attribute.value))
 }
 
 fn lacks_file(tag: &BytesStart<'_>) -> bool {
-    tag.attributes()
-        .with_checks(false)
-        .flatten()
-        .all(|attribute| attribute.key.as_ref() != b"filename")
+    tag.attributes().with_checks(false).flatten().all(|attribute| attribute.key.as_ref() != b"filename")
 }
 
 /// `text` with spaces in place of the sorted `ranges`; line breaks remain.

@@ -49,9 +49,7 @@ pub(super) fn reason(text: &str, error: &urdf_rs::UrdfError) -> (usize, String) 
         }
     }
     let said = plain(error);
-    let missing = said
-        .strip_prefix("missing field `")
-        .and_then(|rest| rest.strip_suffix('`'));
+    let missing = said.strip_prefix("missing field `").and_then(|rest| rest.strip_suffix('`'));
     if let Some(missing) = missing
         && let Some(found) = tags.iter().find_map(|tag| lacks(tag, &tags, missing))
     {
@@ -77,11 +75,7 @@ fn tags(text: &str) -> Vec<Tag> {
             Ok(Event::Start(tag) | Event::Empty(tag)) => {
                 let name = String::from_utf8_lossy(tag.name().as_ref()).into_owned();
                 if known(&name).is_some() || SHAPES.contains(&name.as_str()) {
-                    list.push(Tag {
-                        position: from,
-                        attributes: attributes(&tag),
-                        name,
-                    });
+                    list.push(Tag { position: from, attributes: attributes(&tag), name });
                 }
             }
             Ok(Event::Eof) | Err(_) => return list,
@@ -100,11 +94,7 @@ fn wrong_numbers(key: &str, value: &str) -> Option<String> {
     };
     let words: Vec<&str> = value.split_whitespace().collect();
     if let Some(word) = words.iter().find(|word| word.parse::<f64>().is_err()) {
-        let of = if words.len() > 1 {
-            format!("{word} in {key}=\"{value}\"")
-        } else {
-            format!("{key}=\"{value}\"")
-        };
+        let of = if words.len() > 1 { format!("{word} in {key}=\"{value}\"") } else { format!("{key}=\"{value}\"") };
         return Some(format!("{of} is not a number; give one in SI units"));
     }
     (words.len() != needed).then(|| {
@@ -120,9 +110,7 @@ fn wrong_numbers(key: &str, value: &str) -> Option<String> {
 
 fn counted(number: usize) -> String {
     let words = ["no", "one", "two", "three", "four", "five", "six"];
-    words
-        .get(number)
-        .map_or_else(|| number.to_string(), |word| (*word).to_owned())
+    words.get(number).map_or_else(|| number.to_string(), |word| (*word).to_owned())
 }
 
 /// The position of `tag` and the error, if it lacks the attribute or the element `missing`. `tags` are all there are in the same

@@ -47,10 +47,7 @@ impl Case {
 }
 
 fn origins(reach: f64) -> impl Strategy<Value = Origin> {
-    (
-        prop::array::uniform3(-reach..reach),
-        prop::array::uniform3(-3.0..3.0_f64),
-    )
+    (prop::array::uniform3(-reach..reach), prop::array::uniform3(-3.0..3.0_f64))
 }
 
 fn bodies() -> impl Strategy<Value = Body> {
@@ -62,10 +59,7 @@ fn bodies() -> impl Strategy<Value = Body> {
         axis,
         0.1..20.0_f64,
         prop::array::uniform3(-0.3..0.3_f64),
-        (
-            prop::array::uniform3(0.02..0.3_f64),
-            prop::array::uniform3(-3.0..3.0_f64),
-        ),
+        (prop::array::uniform3(0.02..0.3_f64), prop::array::uniform3(-3.0..3.0_f64)),
         0.0..2.0_f64,
         [-3.0..3.0_f64, -2.0..2.0_f64, -5.0..5.0_f64],
     )

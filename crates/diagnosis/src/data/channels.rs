@@ -98,9 +98,7 @@ fn idle_or_coarse(inputs: &[Input<'_>], joint: usize) -> Option<Why> {
     for input in fitted() {
         for tick in ticks(input).filter(|&tick| speed(input, tick) > least) {
             // −0 equals 0.
-            *counts
-                .entry((input.recording.tau[joint][tick] + 0.0).to_bits())
-                .or_default() += 1;
+            *counts.entry((input.recording.tau[joint][tick] + 0.0).to_bits()).or_default() += 1;
             all += 1;
         }
     }
@@ -169,15 +167,8 @@ fn of_another_kind(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: u
         let mut sizes: Vec<f64> = rows.torque.iter().map(|tau| tau.abs()).collect();
         sizes.sort_by(f64::total_cmp);
         let limits = CHANNEL_LIMITS.map(|share| quantile_of_sorted(&sizes, share));
-        let clipped = |limit: f64| {
-            rows.torque
-                .iter()
-                .map(|tau| tau.clamp(-limit, limit))
-                .collect::<Vec<f64>>()
-        };
-        limits
-            .into_iter()
-            .any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
+        let clipped = |limit: f64| rows.torque.iter().map(|tau| tau.clamp(-limit, limit)).collect::<Vec<f64>>();
+        limits.into_iter().any(|limit| cross_validated(&all, &clipped(limit)) < EXPLAINS_THE_LIMITED)
     };
     // A load that the arm holds in some of the recordings only, or a part of one, is in no sum of the columns over all rows.
     let is_explained_in_stretches = || {
@@ -208,9 +199,8 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
         if motions.sources[chunk.recording].held_out {
             continue;
         }
-        let moving: Vec<usize> = (0..chunk.rows())
-            .filter(|&row| chunk.qd[joint][chunk.tick_of(row)].abs() > scales.rest[joint])
-            .collect();
+        let moving: Vec<usize> =
+            (0..chunk.rows()).filter(|&row| chunk.qd[joint][chunk.tick_of(row)].abs() > scales.rest[joint]).collect();
         let filtered = |signal: &[f64]| -> Vec<f64> {
             let values = chunk.filter(signal);
             moving.iter().map(|&row| values[row]).collect()
@@ -222,32 +212,15 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
         rows.torque.extend(filtered(&chunk.tau[joint]));
         let needed = filtered(&rigid.tau[joint]);
         rows.needed.extend(&needed);
-        rows.recording
-            .extend(std::iter::repeat_n(chunk.recording, moving.len()));
+        rows.recording.extend(std::iter::repeat_n(chunk.recording, moving.len()));
         let plain = [needed, of(qd, sign), filtered(qd), vec![1.0; moving.len()]];
-        rows.plain
-            .iter_mut()
-            .zip(plain)
-            .for_each(|(column, values)| column.extend(values));
-        let mut more = vec![
-            filtered(q),
-            of(q, f64::sin),
-            of(q, f64::cos),
-            filtered(&chunk.qdd[joint]),
-        ];
+        rows.plain.iter_mut().zip(plain).for_each(|(column, values)| column.extend(values));
+        let mut more = vec![filtered(q), of(q, f64::sin), of(q, f64::cos), filtered(&chunk.qdd[joint])];
         more.extend(rigid.links[joint].iter().skip(joint).map(|column| filtered(column)));
         more.extend(rigid.gravity[joint].iter().map(|column| filtered(column)));
-        more.extend(
-            rigid.payload[joint]
-                .iter()
-                .take(CHANNEL_LOADS)
-                .map(|column| filtered(column)),
-        );
+        more.extend(rigid.payload[joint].iter().take(CHANNEL_LOADS).map(|column| filtered(column)));
         rows.more.resize(more.len(), Vec::new());
-        rows.more
-            .iter_mut()
-            .zip(more)
-            .for_each(|(column, values)| column.extend(values));
+        rows.more.iter_mut().zip(more).for_each(|(column, values)| column.extend(values));
     }
     rows
 }
@@ -256,15 +229,12 @@ fn rows(motions: &Motions, rigid: &[Rigid], scales: &Scales, joint: usize) -> Ro
 /// fit of the others and their mean.
 fn cross_validated(columns: &[&Vec<f64>], y: &[f64]) -> f64 {
     let n = columns.len();
-    let scaled: Vec<f64> = columns
-        .iter()
-        .map(|column| 1.0 / mean_square(column.iter().copied()).sqrt().max(1e-12))
-        .collect();
+    let scaled: Vec<f64> =
+        columns.iter().map(|column| 1.0 / mean_square(column.iter().copied()).sqrt().max(1e-12)).collect();
     let x = |row: usize| DVector::from_fn(n, |k, _| scaled[k] * columns[k][row]);
     let length = y.len().div_ceil(CHANNEL_FOLDS);
-    let folds: Vec<Range<usize>> = (0..CHANNEL_FOLDS)
-        .map(|fold| (fold * length).min(y.len())..((fold + 1) * length).min(y.len()))
-        .collect();
+    let folds: Vec<Range<usize>> =
+        (0..CHANNEL_FOLDS).map(|fold| (fold * length).min(y.len())..((fold + 1) * length).min(y.len())).collect();
     let sums: Vec<(DMatrix<f64>, DVector<f64>, f64)> = folds
         .iter()
         .map(|fold| {

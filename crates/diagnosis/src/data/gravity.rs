@@ -14,9 +14,8 @@ use crate::thresholds::{
 /// without what it adds against gravity, or counterweights carry the weight. Gravity in another direction than the model's is gravity.
 pub fn without(motions: &Motions, rigid: &[Rigid], scales: &Scales, gravity: &Vector3<f64>) -> Vec<usize> {
     let joints = (0..motions.dof).filter(|&joint| scales.torque[joint] > 0.0);
-    let found: Vec<(usize, Shown)> = joints
-        .filter_map(|joint| Some((joint, measured(motions, rigid, scales, gravity, joint)?)))
-        .collect();
+    let found: Vec<(usize, Shown)> =
+        joints.filter_map(|joint| Some((joint, measured(motions, rigid, scales, gravity, joint)?))).collect();
     let loaded = || found.iter().filter(|(_, shown)| shown.weight >= LEAST_GRAVITY);
     let lacks = |shown: &Shown| shown.gravity < NO_GRAVITY && shown.motion > LEAST_INERTIA;
     let is_without = loaded().count() > 1 && loaded().all(|(_, shown)| lacks(shown));
@@ -51,9 +50,8 @@ fn measured(
     let (mut torque, mut weight, mut needed) = (Vec::new(), Vec::new(), Vec::new());
     let chunks = motions.chunks.iter().zip(rigid);
     for (chunk, rigid) in chunks.filter(|(chunk, _)| !motions.sources[chunk.recording].held_out) {
-        let moving: Vec<usize> = (0..chunk.rows())
-            .filter(|&row| chunk.qd[joint][chunk.tick_of(row)].abs() > scales.rest[joint])
-            .collect();
+        let moving: Vec<usize> =
+            (0..chunk.rows()).filter(|&row| chunk.qd[joint][chunk.tick_of(row)].abs() > scales.rest[joint]).collect();
         let filtered = |signal: &dyn Fn(usize) -> f64| -> Vec<f64> {
             let values = chunk.filter(&(0..chunk.ticks()).map(signal).collect::<Vec<f64>>());
             moving.iter().map(|&row| values[row]).collect()
@@ -70,10 +68,7 @@ fn measured(
             &|tick| chunk.qd[joint][tick],
             &|_| 1.0,
         ];
-        columns
-            .iter_mut()
-            .zip(signals)
-            .for_each(|(column, signal)| column.extend(filtered(signal)));
+        columns.iter_mut().zip(signals).for_each(|(column, signal)| column.extend(filtered(signal)));
         torque.extend(filtered(&|tick| chunk.tau[joint][tick]));
         weight.extend(filtered(&of_weight));
         needed.extend(filtered(&|tick| rigid.tau[joint][tick]));
@@ -82,21 +77,15 @@ fn measured(
         return None;
     }
     // Directions in which gravity has little torque are unknown: a ridge leaves them at zero.
-    let scale: Vec<f64> = columns
-        .iter()
-        .map(|column| 1.0 / mean_square(column.iter().copied()).sqrt().max(1e-12))
-        .collect();
+    let scale: Vec<f64> =
+        columns.iter().map(|column| 1.0 / mean_square(column.iter().copied()).sqrt().max(1e-12)).collect();
     let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / torque.len() as f64;
     let mut gram = DMatrix::from_fn(8, 8, |i, k| scale[i] * scale[k] * inner(&columns[i], &columns[k]));
     (0..8).for_each(|i| gram[(i, i)] += GRAVITY_RIDGE);
     let right = DVector::from_fn(8, |i, _| scale[i] * inner(&columns[i], &torque));
     let solution = gram.cholesky()?.solve(&right);
     let shown = |first: usize, last: usize| -> f64 {
-        let at = |row: usize| {
-            (first..last)
-                .map(|k| scale[k] * solution[k] * columns[k][row])
-                .sum::<f64>()
-        };
+        let at = |row: usize| (first..last).map(|k| scale[k] * solution[k] * columns[k][row]).sum::<f64>();
         deviation((0..torque.len()).map(at).collect::<Vec<f64>>().iter())
     };
     let part = |of: f64, model: f64| if model > 0.0 { of / model } else { 0.0 };

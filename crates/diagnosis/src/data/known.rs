@@ -34,20 +34,12 @@ impl Known {
     /// [`DiagnosisError`], if an effect does not fit the arm.
     pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, DiagnosisError> {
         if effects.is_empty() {
-            return Ok(Self {
-                arm: arm.clone(),
-                model: None,
-                of_torque: Vec::new(),
-            });
+            return Ok(Self { arm: arm.clone(), model: None, of_torque: Vec::new() });
         }
         let (simulated, now): (Vec<Effect>, Vec<Effect>) = effects.iter().cloned().partition(is_simulated);
         let model = Corrected::new(arm, &now)?;
         let of_torque = simulated.into_iter().filter(|effect| effect.of_torque(0).is_some());
-        Ok(Self {
-            arm: model.arm().clone(),
-            model: Some(model),
-            of_torque: of_torque.collect(),
-        })
+        Ok(Self { arm: model.arm().clone(), model: Some(model), of_torque: of_torque.collect() })
     }
 
     /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets.
@@ -72,8 +64,7 @@ impl Known {
                 let (q, qd, qdd) = (at(&chunk.q), at(&chunk.qd), at(&chunk.qdd));
                 model.predict_at(chunk.time(tick), &mut workspace, &q, &qd, &qdd, &mut prediction);
                 let standing: Vec<f64> = q.iter().zip(model.encoder_offsets()).map(|(q, o)| q + o).collect();
-                self.arm
-                    .inverse_dynamics(&mut scratch, &standing, &qd, &qdd, &mut rigid);
+                self.arm.inverse_dynamics(&mut scratch, &standing, &qd, &qdd, &mut rigid);
                 if has_dry {
                     let friction = model.dry_friction(chunk.time(tick), &qd, &qdd, &prediction);
                     for (joint, both) in friction.into_iter().enumerate() {
@@ -90,10 +81,7 @@ impl Known {
                 }
             }
         }
-        TakenOff {
-            recorded,
-            dry: has_dry.then_some(dry),
-        }
+        TakenOff { recorded, dry: has_dry.then_some(dry) }
     }
 
     /// Subtracts the known effects that are functions of the commanded torque, which is `recorded` (`[chunk][joint][tick]`) where any

@@ -19,24 +19,16 @@ const POSES: usize = 10;
 pub fn largest(motions: &Motions) -> Vec<f64> {
     let fitted = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
     let torques = |joint: usize| fitted().flat_map(move |chunk| &chunk.tau[joint]);
-    (0..motions.dof)
-        .map(|joint| torques(joint).fold(0.0_f64, |largest, tau| largest.max(tau.abs())))
-        .collect()
+    (0..motions.dof).map(|joint| torques(joint).fold(0.0_f64, |largest, tau| largest.max(tau.abs()))).collect()
 }
 
 /// The torque that each joint needs by the model, without the largest 0.1 % (N m or N).
 pub fn needed(motions: &Motions, rigid: &[Rigid]) -> Vec<f64> {
     let needed = |joint: usize| {
-        let mut needed: Vec<f64> = rigid
-            .iter()
-            .flat_map(|rigid| rigid.tau[joint].iter().map(|tau| tau.abs()))
-            .collect();
+        let mut needed: Vec<f64> =
+            rigid.iter().flat_map(|rigid| rigid.tau[joint].iter().map(|tau| tau.abs())).collect();
         let at = (NEEDED_QUANTILE * needed.len() as f64) as usize;
-        if needed.is_empty() {
-            0.0
-        } else {
-            *needed.select_nth_unstable_by(at, f64::total_cmp).1
-        }
+        if needed.is_empty() { 0.0 } else { *needed.select_nth_unstable_by(at, f64::total_cmp).1 }
     };
     (0..motions.dof).map(needed).collect()
 }
@@ -116,11 +108,7 @@ impl Inertial {
                 is_positive &= rest[signal][MEASURED] >= 0.0;
                 eliminate(&mut rest, &whole, signal);
             }
-            if is_positive {
-                before - rest[MEASURED][MEASURED]
-            } else {
-                0.0
-            }
+            if is_positive { before - rest[MEASURED][MEASURED] } else { 0.0 }
         });
         let most = explained.into_iter().fold(0.0, f64::max);
         (most / self.0[MEASURED].len().max(1) as f64).sqrt()
@@ -130,9 +118,7 @@ impl Inertial {
 /// The standard deviation of each joint's measured torque in the training recordings (N m or N).
 pub fn deviations(motions: &Motions) -> Vec<f64> {
     let chunks = || motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
-    (0..motions.dof)
-        .map(|joint| deviation(chunks().flat_map(move |chunk| &chunk.tau[joint])))
-        .collect()
+    (0..motions.dof).map(|joint| deviation(chunks().flat_map(move |chunk| &chunk.tau[joint]))).collect()
 }
 
 /// The largest part of a joint's torque that the noise of the positions causes through the mass matrix, and the joint.
@@ -207,20 +193,12 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
         let speeds = sorted(&|chunk| chunk.qd[joint].iter().map(|v| v.abs()).collect());
         let positions = sorted(&|chunk| chunk.q[joint].clone());
         let speed = quantile_of_sorted(&speeds, SPEED_QUANTILE);
-        let noise = motions
-            .sources
-            .iter()
-            .map(|source| source.velocity_noise[joint])
-            .fold(0.0, f64::max);
+        let noise = motions.sources.iter().map(|source| source.velocity_noise[joint]).fold(0.0, f64::max);
         scales.speed.push(speed);
         scales.rest.push((REST * speed).max(REST_NOISE * noise).max(1e-6));
-        scales
-            .turning
-            .push((TURNING * speed).max(TURNING_NOISE * noise).max(1e-7));
-        let (low, high) = (
-            quantile_of_sorted(&positions, RANGE_QUANTILES.0),
-            quantile_of_sorted(&positions, RANGE_QUANTILES.1),
-        );
+        scales.turning.push((TURNING * speed).max(TURNING_NOISE * noise).max(1e-7));
+        let (low, high) =
+            (quantile_of_sorted(&positions, RANGE_QUANTILES.0), quantile_of_sorted(&positions, RANGE_QUANTILES.1));
         scales.middle.push(0.5 * (low + high));
         scales.range.push((high - low).max(1e-6));
     }
@@ -284,23 +262,8 @@ mod tests {
                 qd += 0.3 * omega * cos;
                 qdd -= 0.3 * omega * omega * sin;
             }
-            let row = [
-                1.0,
-                10.0 * q.sin(),
-                q,
-                q.sin(),
-                q.cos(),
-                qd,
-                qd.signum(),
-                links * qdd,
-                qdd,
-                torque(q, qd, qdd),
-            ];
-            signals
-                .0
-                .iter_mut()
-                .zip(row)
-                .for_each(|(values, value)| values.push(value));
+            let row = [1.0, 10.0 * q.sin(), q, q.sin(), q.cos(), qd, qd.signum(), links * qdd, qdd, torque(q, qd, qdd)];
+            signals.0.iter_mut().zip(row).for_each(|(values, value)| values.push(value));
         }
         signals
     }
@@ -309,9 +272,7 @@ mod tests {
     #[test]
     fn the_inertia_of_a_drive_is_seen_where_the_links_have_none() {
         for links in [0.0, 1e-6] {
-            let signals = signals(links, [0.3, 0.5, 0.8], |_, qd, qdd| {
-                0.2 * qdd + 0.1 * qd + 0.05 * qd.signum()
-            });
+            let signals = signals(links, [0.3, 0.5, 0.8], |_, qd, qdd| 0.2 * qdd + 0.1 * qd + 0.05 * qd.signum());
             let truth = 0.2 * deviation(signals.0[OWN].iter());
             let found = signals.explained_by_acceleration();
             // The position resembles the acceleration, so that a part of it may be either.

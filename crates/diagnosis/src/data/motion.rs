@@ -133,10 +133,7 @@ impl Motions {
     /// Filters `inputs` with the second filter at `wanted` (Hz), or at the highest frequency that the slowest recording allows.
     /// `white` is the noise of each.
     pub fn at(inputs: &[Input<'_>], white: &[WhiteNoise], wanted: f64) -> Self {
-        let slowest = inputs
-            .iter()
-            .map(|input| 1.0 / input.recording.period)
-            .fold(f64::INFINITY, f64::min);
+        let slowest = inputs.iter().map(|input| 1.0 / input.recording.period).fold(f64::INFINITY, f64::min);
         let cutoff = wanted.min(LARGEST_CUTOFF * slowest);
         let used = Used::of(inputs);
         let thin = (used.seconds() * ROWS_PER_PERIOD * cutoff / MOST_ROWS).max(1.0);
@@ -163,11 +160,7 @@ impl Motions {
         let mut end = 0.0;
         for (index, input) in inputs.iter().enumerate() {
             let recording = input.recording;
-            let shift = if motions.one_clock {
-                0.0
-            } else {
-                end - recording.time(0)
-            };
+            let shift = if motions.one_clock { 0.0 } else { end - recording.time(0) };
             if has_before && !input.before && motions.changed_at.is_none() {
                 motions.changed_at = Some(end - 0.5 * PAUSE);
             }
@@ -190,22 +183,14 @@ impl Motions {
         let fitted = |chunk: &&Chunk| !self.sources[chunk.recording].held_out;
         // After the second filter: between the two filters, the acceleration's noise is many times the motion's.
         let power = |signal: &dyn Fn(&Chunk) -> &Vec<f64>| -> f64 {
-            let rows = self
-                .chunks
-                .iter()
-                .filter(fitted)
-                .flat_map(|chunk| chunk.filter(signal(chunk)));
+            let rows = self.chunks.iter().filter(fitted).flat_map(|chunk| chunk.filter(signal(chunk)));
             rows.map(|v| v * v).sum()
         };
         (0..self.dof)
             .map(|joint| {
                 let (speed, acceleration) = (power(&|chunk| &chunk.qd[joint]), power(&|chunk| &chunk.qdd[joint]));
                 // On a joint that does not move, only noise would be measured.
-                let noise = self
-                    .sources
-                    .iter()
-                    .map(|source| source.velocity_noise[joint])
-                    .fold(0.0, f64::max);
+                let noise = self.sources.iter().map(|source| source.velocity_noise[joint]).fold(0.0, f64::max);
                 let rows: usize = self.chunks.iter().filter(fitted).map(Chunk::rows).sum();
                 if speed > (STILL * noise).powi(2) * rows as f64 && speed > 0.0 {
                     (acceleration / speed).sqrt() / (2.0 * std::f64::consts::PI)
@@ -246,9 +231,7 @@ impl Motions {
         }
         let chunk = |window: &Range<usize>| {
             let each = |signal: &[Vec<f64>], filter: fn(&Kernel, &[f64], usize) -> Vec<f64>| -> Vec<Vec<f64>> {
-                let filtered = signal
-                    .iter()
-                    .map(|values| filter(&first, &values[window.clone()], decimation));
+                let filtered = signal.iter().map(|values| filter(&first, &values[window.clone()], decimation));
                 filtered.collect()
             };
             Chunk {
@@ -300,10 +283,7 @@ impl Motions {
     pub fn span(&self, recording: usize) -> [f64; 2] {
         let chunks = self.chunks.iter().filter(|chunk| chunk.recording == recording);
         chunks.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], chunk| {
-            [
-                first.min(chunk.start),
-                last.max(chunk.time(chunk.ticks().saturating_sub(1))),
-            ]
+            [first.min(chunk.start), last.max(chunk.time(chunk.ticks().saturating_sub(1)))]
         })
     }
 

@@ -21,16 +21,8 @@ pub struct WhiteNoise {
 impl WhiteNoise {
     /// The noise of `recording`.
     pub fn of(recording: &RegularRecording) -> Self {
-        let of = |signals: &[Vec<f64>]| {
-            signals
-                .par_iter()
-                .map(|signal| white_noise(signal, recording))
-                .collect()
-        };
-        Self {
-            q: of(&recording.q),
-            tau: of(&recording.tau),
-        }
+        let of = |signals: &[Vec<f64>]| signals.par_iter().map(|signal| white_noise(signal, recording)).collect();
+        Self { q: of(&recording.q), tau: of(&recording.tau) }
     }
 }
 
@@ -76,11 +68,7 @@ fn held_for(values: &[f64]) -> usize {
     steps.sort_unstable();
     let usual = steps[steps.len() / 2];
     let same = steps.iter().filter(|&&step| step == usual).count();
-    if 2 * same > steps.len() && usual <= LONGEST_HOLD {
-        usual
-    } else {
-        1
-    }
+    if 2 * same > steps.len() && usual <= LONGEST_HOLD { usual } else { 1 }
 }
 
 /// The standard deviation of a white noise with the power of `signal` just above the `cutoff` (Hz). Noise that is not white,
@@ -91,10 +79,7 @@ pub fn band_noise(signal: &[f64], recording: &RegularRecording, cutoff: f64) -> 
         let values = &signal[segment.ticks.clone()];
         let n = values.len();
         let bin = 1.0 / (n as f64 * recording.period);
-        let (from, to) = (
-            (NOISE_BAND.0 * cutoff / bin) as usize,
-            (NOISE_BAND.1 * cutoff / bin) as usize,
-        );
+        let (from, to) = ((NOISE_BAND.0 * cutoff / bin) as usize, (NOISE_BAND.1 * cutoff / bin) as usize);
         if to >= n / 2 || to < from + LEAST_NOISE_BINS {
             continue;
         }

@@ -128,8 +128,7 @@ impl Rigid {
             own[tick..].copy_from_slice(&later[tick..]);
         }
         let arms = later.arms.into_iter();
-        self.arms
-            .extend(arms.map(|(from, arm, offset)| (from.max(tick), arm, offset)));
+        self.arms.extend(arms.map(|(from, arm, offset)| (from.max(tick), arm, offset)));
     }
 
     /// All signals.
@@ -158,11 +157,7 @@ impl Rigid {
         let ticks = chunk.ticks();
         let zeros = || vec![0.0; ticks];
         let square = || (0..n).map(|_| (0..n).map(|_| zeros()).collect()).collect();
-        let bodies: Vec<[f64; 10]> = arm
-            .fixed_bodies()
-            .iter()
-            .map(|body| body.inertia.parameters())
-            .collect();
+        let bodies: Vec<[f64; 10]> = arm.fixed_bodies().iter().map(|body| body.inertia.parameters()).collect();
         let mut rigid = Self {
             tau: (0..n).map(|_| zeros()).collect(),
             rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
@@ -276,9 +271,7 @@ impl Rigid {
         let mut signals: Vec<Vec<Vec<f64>>> = (0..n)
             .map(|joint| {
                 let acts = |k: usize| k / PARAMETERS_PER_LINK >= joint;
-                (0..n * PARAMETERS_PER_LINK)
-                    .map(|k| if acts(k) { vec![0.0; ticks] } else { Vec::new() })
-                    .collect()
+                (0..n * PARAMETERS_PER_LINK).map(|k| if acts(k) { vec![0.0; ticks] } else { Vec::new() }).collect()
             })
             .collect();
         let ends = self.arms.iter().skip(1).map(|(from, ..)| *from).chain([ticks]);
@@ -299,11 +292,7 @@ impl Rigid {
             }
         }
         for column in signals.iter_mut().flatten().filter(|column| !column.is_empty()) {
-            *column = if column.iter().all(|&v| v == 0.0) {
-                vec![0.0; chunk.rows()]
-            } else {
-                chunk.filter(column)
-            };
+            *column = if column.iter().all(|&v| v == 0.0) { vec![0.0; chunk.rows()] } else { chunk.filter(column) };
         }
         signals
     }
@@ -328,11 +317,7 @@ impl Along {
         for (q, offset) in q.chunks_exact_mut(ticks.len()).zip(offset) {
             q.iter_mut().for_each(|q| *q += offset);
         }
-        Self {
-            q,
-            qd: all(&chunk.qd),
-            qdd: all(&chunk.qdd),
-        }
+        Self { q, qd: all(&chunk.qd), qdd: all(&chunk.qdd) }
     }
 }
 

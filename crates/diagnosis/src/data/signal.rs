@@ -34,10 +34,7 @@ impl Kernel {
         let mut smooth: Vec<f64> = x.iter().map(|&x| density(x) * (3.0 - x * x) / 2.0).collect();
         // Convolution reverses the kernel: the weights at +x are those of the derivative at −x.
         let mut first: Vec<f64> = x.iter().map(|&x| -density(x) * (x * x * x - 5.0 * x) / 2.0).collect();
-        let mut second: Vec<f64> = x
-            .iter()
-            .map(|&x| density(x) * (-x.powi(4) + 8.0 * x * x - 5.0) / 2.0)
-            .collect();
+        let mut second: Vec<f64> = x.iter().map(|&x| density(x) * (-x.powi(4) + 8.0 * x * x - 5.0) / 2.0).collect();
         // Makes the moments exact on the samples: 1 → 1, t → 1, t² / 2 → 1, and constants → 0.
         let time: Vec<f64> = (-reach..=reach).map(|tick| tick as f64 * period).collect();
         let moment =
@@ -52,12 +49,7 @@ impl Kernel {
         }
         let curvature = moment(&second, 2) / 2.0;
         second.iter_mut().for_each(|w| *w /= curvature);
-        Self {
-            smooth,
-            first,
-            second,
-            width,
-        }
+        Self { smooth, first, second, width }
     }
 
     /// The number of samples on either side that a filtered sample needs.
@@ -105,11 +97,7 @@ impl Kernel {
 
 /// The number of outputs that [`Kernel`]s give for `samples` inputs.
 pub fn outputs(samples: usize, reach: usize, stride: usize) -> usize {
-    if samples <= 2 * reach {
-        0
-    } else {
-        (samples - 2 * reach - 1) / stride + 1
-    }
+    if samples <= 2 * reach { 0 } else { (samples - 2 * reach - 1) / stride + 1 }
 }
 
 fn apply(weights: &[f64], signal: &[f64], stride: usize) -> Vec<f64> {
@@ -131,22 +119,15 @@ mod tests {
             let at = |k: usize| k as f64 * 0.01;
             let f = |t: f64| 1.0 - 2.0 * t + 3.0 * t * t - 4.0 * t * t * t;
             let signal: Vec<f64> = (0..200).map(|k| f(at(k))).collect();
-            let (smooth, first, second) = (
-                kernel.smooth(&signal, 3),
-                kernel.first(&signal, 3),
-                kernel.second(&signal, 3),
-            );
+            let (smooth, first, second) =
+                (kernel.smooth(&signal, 3), kernel.first(&signal, 3), kernel.second(&signal, 3));
             for k in 0..smooth.len() {
                 let t = at(3 * k + kernel.reach());
                 assert!((smooth[k] - f(t)).abs() < 2e-3, "{cutoff} Hz: {} {}", smooth[k], f(t));
                 let slope = -2.0 + 6.0 * t - 12.0 * t * t;
                 assert!((first[k] - slope).abs() < 5e-2, "{cutoff} Hz: {} {slope}", first[k]);
                 let curvature = 6.0 - 24.0 * t;
-                assert!(
-                    (second[k] - curvature).abs() < 0.2,
-                    "{cutoff} Hz: {} {curvature}",
-                    second[k]
-                );
+                assert!((second[k] - curvature).abs() < 0.2, "{cutoff} Hz: {} {curvature}", second[k]);
             }
         }
     }

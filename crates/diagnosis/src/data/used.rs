@@ -123,10 +123,7 @@ impl Used {
                 let from = segment.ticks.start + piece * length;
                 let to = (from + length).min(segment.ticks.end);
                 let used = (share * (to - from) as f64).ceil() as usize;
-                Section {
-                    ticks: from..to,
-                    used: used.max(least.min(to - from)),
-                }
+                Section { ticks: from..to, used: used.max(least.min(to - from)) }
             }));
         }
         sections
@@ -176,10 +173,7 @@ mod tests {
         let ticks = 100 * seconds;
         RegularRecording {
             period: 0.01,
-            segments: vec![Segment {
-                ticks: 0..ticks,
-                start: 0.0,
-            }],
+            segments: vec![Segment { ticks: 0..ticks, start: 0.0 }],
             present: vec![true; ticks],
             ..RegularRecording::default()
         }
@@ -233,12 +227,7 @@ mod tests {
     #[test]
     fn partial_use_is_reported() {
         let recordings = [recording(10), recording(2000), recording(50)];
-        let input = |(name, recording), held_out| Input {
-            name,
-            recording,
-            held_out,
-            before: false,
-        };
+        let input = |(name, recording), held_out| Input { name, recording, held_out, before: false };
         let inputs = [
             input(("short.csv", &recordings[0]), false),
             input(("long.csv", &recordings[1]), false),
@@ -247,10 +236,7 @@ mod tests {
         let used = Used::of(&inputs);
         assert_eq!(used.part(0, &inputs[0]), None);
         let [seconds, of] = used.part(1, &inputs[1]).expect("a part");
-        assert!(
-            (seconds - 240.0).abs() < 2.0 && (of - 2000.0).abs() < 1e-6,
-            "{seconds} {of}"
-        );
+        assert!((seconds - 240.0).abs() < 2.0 && (of - 2000.0).abs() < 1e-6, "{seconds} {of}");
         assert_eq!(used.part(2, &inputs[2]), None);
         assert_eq!(
             used.remarks(),

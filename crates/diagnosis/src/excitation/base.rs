@@ -72,10 +72,7 @@ impl Scratch {
     /// A workspace for `arm`.
     pub fn new(arm: &Arm) -> Self {
         let dof = arm.dof();
-        Self {
-            workspace: Workspace::new(arm),
-            regressor: DMatrix::zeros(dof, PARAMETERS_PER_LINK * dof),
-        }
+        Self { workspace: Workspace::new(arm), regressor: DMatrix::zeros(dof, PARAMETERS_PER_LINK * dof) }
     }
 
     /// Computes the torque regressor at a state into `regressor`.
@@ -90,13 +87,7 @@ impl Base {
         let dof = arm.dof();
         let rest: Vec<f64> = allowed.velocity.iter().map(|speed| REST * speed).collect();
         let all = dof * (PARAMETERS_PER_LINK + OWN);
-        let mut base = Self {
-            dof,
-            columns: (0..all).collect(),
-            scales: vec![1.0; all],
-            weights: vec![1.0; dof],
-            rest,
-        };
+        let mut base = Self { dof, columns: (0..all).collect(), scales: vec![1.0; all], weights: vec![1.0; dof], rest };
         let mut random = ChaCha8Rng::seed_from_u64(0);
         let mut scratch = Scratch::new(arm);
         let mut rows = DMatrix::zeros(STATES * dof, all);
@@ -122,18 +113,11 @@ impl Base {
             }
             let parameters = DVector::from_vec(arm.inertial_parameters());
             let tau = &scratch.regressor * parameters;
-            torque
-                .iter_mut()
-                .zip(tau.iter())
-                .for_each(|(sum, tau)| *sum += tau * tau / STATES as f64);
+            torque.iter_mut().zip(tau.iter()).for_each(|(sum, tau)| *sum += tau * tau / STATES as f64);
         }
         base.weights = (0..dof)
             .map(|j| {
-                let scale = if allowed.torque[j].is_finite() {
-                    allowed.torque[j]
-                } else {
-                    torque[j].sqrt()
-                };
+                let scale = if allowed.torque[j].is_finite() { allowed.torque[j] } else { torque[j].sqrt() };
                 if scale > 0.0 { 1.0 / scale } else { 1.0 }
             })
             .collect();
@@ -178,11 +162,7 @@ impl Base {
             of_inertial: inertial,
             friction: count(&|kind| matches!(kind, Some(0 | 1))),
             drive: count(&|kind| kind == Some(2)),
-            drive_with_link: names
-                .enumerate()
-                .filter(|(j, _)| !is_determined(j))
-                .map(|(_, name)| name)
-                .collect(),
+            drive_with_link: names.enumerate().filter(|(j, _)| !is_determined(j)).map(|(_, name)| name).collect(),
         }
     }
 
@@ -201,10 +181,7 @@ impl Base {
         let width = self.columns.len();
         let mut scratch = Scratch::new(arm);
         let mut rows = vec![0.0; self.dof * width];
-        let mut measured = Measured {
-            plain: DMatrix::zeros(width, width),
-            weighted: DMatrix::zeros(width, width),
-        };
+        let mut measured = Measured { plain: DMatrix::zeros(width, width), weighted: DMatrix::zeros(width, width) };
         let mut count = 0_u32;
         for [q, qd, qdd] in samples {
             self.rows(arm, &mut scratch, [&q, &qd, &qdd], &mut rows);
@@ -225,10 +202,7 @@ impl Base {
 
 /// The columns of `rows` that are independent of earlier ones, and the reciprocal of each one's root mean square.
 fn independent(rows: &DMatrix<f64>) -> (Vec<usize>, Vec<f64>) {
-    let size: Vec<f64> = rows
-        .column_iter()
-        .map(|column| column.norm() / (rows.nrows() as f64).sqrt())
-        .collect();
+    let size: Vec<f64> = rows.column_iter().map(|column| column.norm() / (rows.nrows() as f64).sqrt()).collect();
     let largest = size.iter().copied().fold(0.0, f64::max);
     let (mut columns, mut scales, mut basis) = (Vec::new(), Vec::new(), Vec::<DVector<f64>>::new());
     for (column, &size) in size.iter().enumerate() {
@@ -265,32 +239,20 @@ impl Measured {
     /// The quality of the motion for the parameters, compared with the `proposed` motion.
     pub fn quality(&self, proposed: &Self) -> Quality {
         let norms = self.plain.diagonal().map(f64::sqrt);
-        let scaled = DMatrix::from_fn(norms.len(), norms.len(), |a, b| {
-            self.plain[(a, b)] / (norms[a] * norms[b])
-        });
+        let scaled = DMatrix::from_fn(norms.len(), norms.len(), |a, b| self.plain[(a, b)] / (norms[a] * norms[b]));
         let information = |measured: &Self| {
             let scale = proposed.weighted.diagonal().map(|value| 1.0 / value.sqrt());
-            let matrix = DMatrix::from_fn(scale.len(), scale.len(), |a, b| {
-                measured.weighted[(a, b)] * scale[a] * scale[b]
-            });
+            let matrix =
+                DMatrix::from_fn(scale.len(), scale.len(), |a, b| measured.weighted[(a, b)] * scale[a] * scale[b]);
             let values = matrix.symmetric_eigenvalues();
             let largest = values.max();
-            let logarithms = values.map(|value| {
-                if value > SINGULAR * largest {
-                    value.ln()
-                } else {
-                    f64::NEG_INFINITY
-                }
-            });
+            let logarithms =
+                values.map(|value| if value > SINGULAR * largest { value.ln() } else { f64::NEG_INFINITY });
             logarithms.sum() / (2.0 * scale.len() as f64)
         };
         Quality {
             condition: condition(&self.plain),
-            scaled_condition: if norms.min() > 0.0 {
-                condition(&scaled)
-            } else {
-                f64::INFINITY
-            },
+            scaled_condition: if norms.min() > 0.0 { condition(&scaled) } else { f64::INFINITY },
             deviation: (information(proposed) - information(self)).exp(),
         }
     }
@@ -300,9 +262,5 @@ impl Measured {
 fn condition(matrix: &DMatrix<f64>) -> f64 {
     let values = matrix.clone().symmetric_eigenvalues();
     let (least, most) = (values.min(), values.max());
-    if least > SINGULAR * most {
-        (most / least).sqrt()
-    } else {
-        f64::INFINITY
-    }
+    if least > SINGULAR * most { (most / least).sqrt() } else { f64::INFINITY }
 }

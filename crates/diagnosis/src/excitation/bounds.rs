@@ -107,15 +107,8 @@ impl Allowed {
             torque: Vec::new(),
         };
         for (joint, limits) in arm.joints().iter().zip(limits) {
-            let unlimited = |what| ExcitationError::Unlimited {
-                joint: joint.name.clone(),
-                what,
-            };
-            let no_room = |what, value: String| ExcitationError::NoRoom {
-                joint: joint.name.clone(),
-                what,
-                value,
-            };
+            let unlimited = |what| ExcitationError::Unlimited { joint: joint.name.clone(), what };
+            let no_room = |what, value: String| ExcitationError::NoRoom { joint: joint.name.clone(), what, value };
             let [mut lower, mut upper] = limits.position;
             if joint.kind == JointKind::Revolute && lower == f64::NEG_INFINITY && upper == f64::INFINITY {
                 (lower, upper) = (-HALF_TURN, HALF_TURN);
@@ -129,11 +122,9 @@ impl Allowed {
             if !limits.velocity.is_finite() {
                 return Err(unlimited("velocity"));
             }
-            for (what, value) in [
-                ("velocity", limits.velocity),
-                ("acceleration", limits.acceleration),
-                ("effort", limits.effort),
-            ] {
+            for (what, value) in
+                [("velocity", limits.velocity), ("acceleration", limits.acceleration), ("effort", limits.effort)]
+            {
                 if value.is_nan() || value <= 0.0 {
                     return Err(no_room(what, value.to_string()));
                 }
@@ -196,11 +187,7 @@ impl Allowed {
         let mut place = vec![0.0; arm.dof()];
         for _ in 0..PLACES {
             let torque = self.static_torque(arm, &mut workspace, &self.at(&place));
-            if torque
-                .iter()
-                .zip(&self.torque)
-                .all(|(torque, most)| torque.abs() <= HELD * most)
-            {
+            if torque.iter().zip(&self.torque).all(|(torque, most)| torque.abs() <= HELD * most) {
                 return Ok(place);
             }
             place.fill_with(|| random.random_range(-0.9..0.9));

@@ -67,10 +67,7 @@ impl<'a> Criterion<'a> {
         let samples: Vec<Sample> = self
             .factors
             .par_iter()
-            .map_init(
-                || Scratch::new(self.arm),
-                |scratch, factors| self.sample(scratch, coefficients, factors),
-            )
+            .map_init(|| Scratch::new(self.arm), |scratch, factors| self.sample(scratch, coefficients, factors))
             .collect();
         let (mut value, slopes) = self.information(&samples);
         if !value.is_finite() {
@@ -78,10 +75,7 @@ impl<'a> Criterion<'a> {
         }
         let gradients: Vec<(f64, [Vec<f64>; 3])> = samples
             .par_iter()
-            .map_init(
-                || Scratch::new(self.arm),
-                |scratch, sample| self.gradient(scratch, sample, &slopes, hardness),
-            )
+            .map_init(|| Scratch::new(self.arm), |scratch, sample| self.gradient(scratch, sample, &slopes, hardness))
             .collect();
         let mut gradient = vec![0.0; coefficients.len()];
         for ((penalty, by), factors) in gradients.iter().zip(&self.factors) {
@@ -127,14 +121,11 @@ impl<'a> Criterion<'a> {
         let state = self.series.at(coefficients, factors);
         let width = self.base.columns.len();
         let mut rows = vec![0.0; self.arm.dof() * width];
-        self.base
-            .rows(self.arm, scratch, state.each_ref().map(Vec::as_slice), &mut rows);
+        self.base.rows(self.arm, scratch, state.each_ref().map(Vec::as_slice), &mut rows);
         let rigid = &scratch.regressor * &self.parameters;
         let joints = self.arm.joints().iter();
         let torque = joints.zip(&state[2]).zip(rigid.iter());
-        let torque = torque
-            .map(|((joint, qdd), rigid)| rigid + joint.rotor_inertia * qdd)
-            .collect();
+        let torque = torque.map(|((joint, qdd), rigid)| rigid + joint.rotor_inertia * qdd).collect();
         Sample { state, rows, torque }
     }
 
@@ -218,9 +209,7 @@ impl<'a> Criterion<'a> {
 fn spread(matrix: &DMatrix<f64>) -> (f64, DMatrix<f64>) {
     let eigen = matrix.clone().symmetric_eigen();
     let largest = eigen.eigenvalues.max();
-    let values = eigen
-        .eigenvalues
-        .map(|value| value.max(RIDGE * RIDGE * largest) / largest);
+    let values = eigen.eigenvalues.map(|value| value.max(RIDGE * RIDGE * largest) / largest);
     let [above, below] = [SMOOTH, -SMOOTH].map(|exponent| values.map(|value| value.powi(exponent)).sum());
     let exponent = f64::from(SMOOTH);
     let slopes = values.map(|value| 0.5 / largest * (value.powi(SMOOTH - 1) / above - value.powi(-SMOOTH - 1) / below));
@@ -248,16 +237,11 @@ mod tests {
         let base = Base::new(&arm, &allowed);
         // 36 of 60 inertial parameters (Khalil and Dombre 2002), 12 of friction, and the drives of joints 3 to 6.
         let determined = base.determined(&arm);
-        assert_eq!(
-            (determined.inertial, determined.friction, determined.drive),
-            (36, 12, 4)
-        );
+        assert_eq!((determined.inertial, determined.friction, determined.drive), (36, 12, 4));
         assert_eq!(determined.drive_with_link, ["joint1", "joint2"]);
         let criterion = Criterion::new(&arm, &base, &allowed, &series);
         let waves = |scale: f64, turn: f64| -> Vec<f64> {
-            let mut list: Vec<f64> = (0..series.len())
-                .map(|k| scale * (turn * k as f64 + 0.3).sin())
-                .collect();
+            let mut list: Vec<f64> = (0..series.len()).map(|k| scale * (turn * k as f64 + 0.3).sin()).collect();
             series.project(&mut list);
             list
         };
@@ -268,10 +252,7 @@ mod tests {
             let slope: f64 = gradient.iter().zip(&along).map(|(g, d)| g * d).sum();
             let moved = |step: f64| -> Vec<f64> { at.iter().zip(&along).map(|(a, d)| a + step * d).collect() };
             let difference = (criterion.look(&moved(1e-7), 10.0).0 - criterion.look(&moved(-1e-7), 10.0).0) / 2e-7;
-            assert!(
-                (slope - difference).abs() < 1e-3 * difference.abs().max(1.0),
-                "{slope} instead of {difference}"
-            );
+            assert!((slope - difference).abs() < 1e-3 * difference.abs().max(1.0), "{slope} instead of {difference}");
             assert_eq!(criterion.look(&at, 20.0).0 > value, is_beyond);
         }
     }

@@ -23,12 +23,7 @@ pub struct Series {
 impl Series {
     /// The allowed motion; the series are about its middle.
     pub fn new(allowed: &Allowed, harmonics: usize, period: f64) -> Self {
-        Self {
-            middle: allowed.middle.clone(),
-            room: allowed.room.clone(),
-            harmonics,
-            period,
-        }
+        Self { middle: allowed.middle.clone(), room: allowed.room.clone(), harmonics, period }
     }
 
     /// The number of joints.
@@ -54,9 +49,7 @@ impl Series {
             let mean = sines.iter().sum::<f64>() / harmonics as f64;
             sines.iter_mut().for_each(|a| *a -= mean);
             let moment = (1..).zip(cosines.iter()).map(|(k, b)| f64::from(k) * b).sum::<f64>() / weights;
-            (1..)
-                .zip(cosines.iter_mut())
-                .for_each(|(k, b)| *b -= f64::from(k) * moment);
+            (1..).zip(cosines.iter_mut()).for_each(|(k, b)| *b -= f64::from(k) * moment);
         }
     }
 
@@ -91,11 +84,7 @@ impl Series {
                 (scale * own[k - 1], scale * own[self.harmonics + k - 1])
             });
             let (amplitude, phase) = pairs.map(|(a, b)| (a.hypot(b), b.atan2(a))).unzip();
-            Sine {
-                amplitude,
-                frequency: vec![k as f64 / self.period; dof],
-                phase,
-            }
+            Sine { amplitude, frequency: vec![k as f64 / self.period; dof], phase }
         };
         Reference {
             centre: (0..dof).map(|joint| self.centre(coefficients, joint)).collect(),
@@ -115,11 +104,7 @@ impl Series {
         for k in 1..=self.harmonics {
             let omega = TAU * k as f64 / self.period;
             let (sin, cos) = (omega * time).sin_cos();
-            let own = [
-                (sin, cos),
-                (omega * cos, -omega * sin),
-                (-omega * omega * sin, -omega * omega * cos),
-            ];
+            let own = [(sin, cos), (omega * cos, -omega * sin), (-omega * omega * sin, -omega * omega * cos)];
             for (list, (a, b)) in factors.iter_mut().zip(own) {
                 list[k] = a / k as f64;
                 list[self.harmonics + k] = b / k as f64;
@@ -164,12 +149,7 @@ mod tests {
     use super::*;
 
     fn series() -> Series {
-        Series {
-            middle: vec![0.3, -1.0],
-            room: vec![2.0, 0.5],
-            harmonics: 5,
-            period: 10.0,
-        }
+        Series { middle: vec![0.3, -1.0], room: vec![2.0, 0.5], harmonics: 5, period: 10.0 }
     }
 
     /// The reference is the series, is at rest at the ends of its period, and repeats; its factors give the same motion.
@@ -187,10 +167,7 @@ mod tests {
         for time in [0.0, 10.0, 20.0] {
             let motion = at(time);
             for joint in 0..2 {
-                assert!(
-                    motion.qd[joint].abs() < 1e-12 && motion.qdd[joint].abs() < 1e-12,
-                    "{motion:?}"
-                );
+                assert!(motion.qd[joint].abs() < 1e-12 && motion.qdd[joint].abs() < 1e-12, "{motion:?}");
                 assert!((motion.q[joint] - at(0.0).q[joint]).abs() < 1e-12);
             }
         }

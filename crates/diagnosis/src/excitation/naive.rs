@@ -17,12 +17,6 @@ pub fn motion(arm: &Arm, allowed: &Allowed) -> Option<Reference> {
         torque: allowed.torque.clone(),
         model: Corrected::new(arm, &[]).ok()?,
     };
-    let design = Design {
-        mix: Mix::Steady,
-        speed: 1.0,
-        amplitude: 1.0,
-        only: Vec::new(),
-        others: 1.0,
-    };
+    let design = Design { mix: Mix::Steady, speed: 1.0, amplitude: 1.0, only: Vec::new(), others: 1.0 };
     design.within(&limits).map(|(reference, _)| reference)
 }

@@ -47,10 +47,7 @@ pub fn best(
         if found.as_ref().is_none_or(|(least, _)| value < *least) {
             found = Some((value, at));
         }
-        done.store(
-            (EVALUATIONS * (number + 1) as f64 * iterations(&EACH)) as u64,
-            Ordering::Relaxed,
-        );
+        done.store((EVALUATIONS * (number + 1) as f64 * iterations(&EACH)) as u64, Ordering::Relaxed);
     }
     let (_, mut at) = found.ok_or_else(|| Error::msg(format!("none of {count} starts led to a motion")))?;
     for (hardness, most) in BEST {
@@ -64,16 +61,10 @@ type Look<'a> = dyn Fn(&[f64], f64) -> (f64, Vec<f64>) + 'a;
 
 /// The lowest value on the descent from `start`, and its coefficients.
 fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result<(f64, Vec<f64>), Error> {
-    let problem = Problem {
-        look,
-        hardness,
-        seen: RefCell::default(),
-    };
+    let problem = Problem { look, hardness, seen: RefCell::default() };
     problem.look(&start)?;
     let line_search = MoreThuenteLineSearch::new().with_width_tolerance(0.02)?;
-    let solver = LBFGS::new(line_search, MEMORY)
-        .with_tolerance_grad(1e-6)?
-        .with_tolerance_cost(1e-9)?;
+    let solver = LBFGS::new(line_search, MEMORY).with_tolerance_grad(1e-6)?.with_tolerance_cost(1e-9)?;
     let seen = &problem.seen;
     let run = Executor::new(Borrowed(&problem), solver)
         .configure(|state| state.param(start.clone()).max_iters(most))
@@ -129,11 +120,7 @@ impl Problem<'_> {
         if !value.is_finite() || gradient.iter().any(|slope| !slope.is_finite()) {
             return Err(Error::msg("the criterion is not finite"));
         }
-        seen.stalled = if value < seen.best - NO_GAIN {
-            0
-        } else {
-            seen.stalled + 1
-        };
+        seen.stalled = if value < seen.best - NO_GAIN { 0 } else { seen.stalled + 1 };
         if value < seen.best {
             seen.best = value;
             seen.best_at = at.to_vec();

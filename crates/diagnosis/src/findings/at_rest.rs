@@ -42,10 +42,7 @@ pub fn note(last: &FinalFit) -> Option<String> {
             other.recording == longest.recording && to - from > 0.5 * seconds(&longest.rows)
         })
         .collect();
-    let mut names: Vec<&str> = together
-        .iter()
-        .map(|held| data.arm.joints()[held.joint].name.as_str())
-        .collect();
+    let mut names: Vec<&str> = together.iter().map(|held| data.arm.joints()[held.joint].name.as_str()).collect();
     names.dedup();
     let share = together.iter().map(|held| held.share).fold(0.0, f64::max);
     let source = &data.motions.sources[longest.recording];
@@ -102,12 +99,7 @@ fn held(last: &FinalFit) -> Vec<Held> {
                 held.share = held.share.max(share);
             } else {
                 let recording = table.rows.iter().position(|rows| rows.contains(&row)).unwrap_or(0);
-                open = Some(Held {
-                    joint,
-                    recording,
-                    rows: row..row + 1,
-                    share,
-                });
+                open = Some(Held { joint, recording, rows: row..row + 1, share });
             }
         }
         list.extend(open);

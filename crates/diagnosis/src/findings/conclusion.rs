@@ -64,13 +64,7 @@ pub struct Conclusion {
 impl Conclusion {
     /// The conclusions from the fit `last`.
     pub fn new(last: &FinalFit, inputs: &[Input<'_>], options: &Options) -> Self {
-        let FinalFit {
-            study,
-            judged,
-            resampled,
-            residual,
-            ..
-        } = last;
+        let FinalFit { study, judged, resampled, residual, .. } = last;
         let (data, table) = (&study.data, &study.table);
         let mut findings = findings(last);
         let not_there = without_known(data, options, &mut findings);
@@ -79,10 +73,7 @@ impl Conclusion {
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
-            others.splice(
-                0..0,
-                dual_sensor::findings(data, inputs, |joint| last.names(&JointElasticity, joint)),
-            );
+            others.splice(0..0, dual_sensor::findings(data, inputs, |joint| last.names(&JointElasticity, joint)));
             others.extend(transients.contact.clone());
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
@@ -124,10 +115,7 @@ impl Conclusion {
         }
         ask_for_motion(last, &mut unexplained);
         findings.sort_by(|(a, _), (b, _)| {
-            b.share
-                .total_cmp(&a.share)
-                .then(a.effect.cmp(b.effect))
-                .then(a.joint.cmp(&b.joint))
+            b.share.total_cmp(&a.share).then(a.effect.cmp(b.effect)).then(a.joint.cmp(&b.joint))
         });
         let changed = data.motions.changed_at.map(|_| {
             let new = findings.iter().map(|(finding, _)| finding);
@@ -141,9 +129,8 @@ impl Conclusion {
             finding.change.is_some() && (spec.is_wrong_mass || spec.may_be_inertial)
         };
         let own_load = study.own_load.as_ref();
-        let different_load = own_load
-            .filter(|_| !findings.iter().any(is_named))
-            .map(|load| different(load, &data.motions.sources));
+        let different_load =
+            own_load.filter(|_| !findings.iter().any(is_named)).map(|load| different(load, &data.motions.sources));
         for (finding, _) in &mut findings {
             finding.sentence = sentences::of(finding, &fit);
         }
@@ -180,10 +167,7 @@ impl Conclusion {
 
     /// The effects that correct the torque model.
     pub fn effects(&self) -> impl Iterator<Item = Effect> {
-        let found = self
-            .findings
-            .iter()
-            .filter(|(finding, _)| finding.corrects && finding.acts_today());
+        let found = self.findings.iter().filter(|(finding, _)| finding.corrects && finding.acts_today());
         let found = found.map(|(finding, _)| &finding.as_effect);
         let constants = self.constant_torques.iter().map(constant_torques::effect);
         found.chain(&self.inertials.effects).cloned().chain(constants)
@@ -257,11 +241,7 @@ fn different(load: &OwnLoad, sources: &[SourceRecording]) -> DifferentLoad {
     DifferentLoad {
         recordings: names.collect(),
         until: load.until.map(|until| (until * 1e3).round() / 1e3),
-        more_than_others: Parameter {
-            value,
-            ci95: [value - half, value + half],
-            unit: "kg",
-        },
+        more_than_others: Parameter { value, ci95: [value - half, value + half], unit: "kg" },
     }
 }
 
@@ -270,11 +250,7 @@ fn used_in_part(sources: &[SourceRecording]) -> Vec<UsedPart> {
     let parts = sources.iter().filter_map(|source| {
         let [used_seconds, of_seconds] = source.part?.map(|seconds| (seconds * 1e3).round() / 1e3);
         let recording = source.name.clone();
-        Some(UsedPart {
-            recording,
-            used_seconds,
-            of_seconds,
-        })
+        Some(UsedPart { recording, used_seconds, of_seconds })
     });
     parts.collect()
 }
@@ -317,10 +293,7 @@ fn without_known(data: &Data, options: &Options, findings: &mut Vec<(Finding, Op
                 let (finding, _) = findings.remove(place);
                 remarks.extend(sentences::of_another_size(known, &finding));
             }
-            None => remarks.push(sentences::not_subtracted(
-                known,
-                data.motions.cutoff < LEAST_FOR_DYNAMICS,
-            )),
+            None => remarks.push(sentences::not_subtracted(known, data.motions.cutoff < LEAST_FOR_DYNAMICS)),
         }
     }
     remarks
@@ -341,17 +314,10 @@ mod tests {
             would_be_seen_above: BTreeMap::new(),
             would_be_seen_below: BTreeMap::new(),
         };
-        let list = vec![
-            entry("joint_elasticity", "a"),
-            entry("joint_elasticity", "b"),
-            entry("backlash", "a"),
-        ];
+        let list = vec![entry("joint_elasticity", "a"), entry("joint_elasticity", "b"), entry("backlash", "a")];
         let finding = Finding::of(Effect::of(&JointElasticity).on("a".to_owned()));
         let remaining = not_named(list, &[(finding, None)]);
-        let remaining: Vec<_> = remaining
-            .iter()
-            .map(|entry| (entry.effect, entry.joint.as_deref()))
-            .collect();
+        let remaining: Vec<_> = remaining.iter().map(|entry| (entry.effect, entry.joint.as_deref())).collect();
         assert_eq!(remaining, [("joint_elasticity", Some("b")), ("backlash", Some("a"))]);
     }
 }

@@ -127,9 +127,7 @@ fn regress(rows: &Rows) -> Option<Regression> {
     let (train, residual) = explained(false)?;
     let variance = residual / (count - p as f64);
     Some(Regression {
-        errors: (0..p)
-            .map(|k| SENSOR_ERRORS * (variance * inverse[(k, k)]).sqrt())
-            .collect(),
+        errors: (0..p).map(|k| SENSOR_ERRORS * (variance * inverse[(k, k)]).sqrt()).collect(),
         coefficients: solution.as_slice().to_vec(),
         train,
         held_out: explained(true).map(|held| held.0),
@@ -143,11 +141,7 @@ impl Regression {
 
     fn parameter(&self, k: usize, unit: &'static str) -> Parameter {
         let (value, half) = (self.coefficients[k], NORMAL_95 * self.errors[k]);
-        Parameter {
-            value,
-            ci95: [value - half, value + half],
-            unit,
-        }
+        Parameter { value, ci95: [value - half, value + half], unit }
     }
 
     fn is_clear(&self, k: usize) -> bool {
@@ -185,24 +179,14 @@ fn deflection(data: &Data, joint: usize, inputs: &[Input<'_>]) -> Option<Finding
     let unit = Quantity::Stiffness.unit(kind);
     let stiffness = Parameter {
         value: 1.0 / compliance,
-        ci95: [
-            1.0 / (compliance + NORMAL_95 * error),
-            1.0 / (compliance - NORMAL_95 * error),
-        ],
+        ci95: [1.0 / (compliance + NORMAL_95 * error), 1.0 / (compliance - NORMAL_95 * error)],
         unit,
     };
     let name = data.arm.joints()[joint].name.clone();
     let effect = Effect::of(&JointElasticity).on(name.clone());
     let effect = effect.with("stiffness", stiffness.value).with("damping", 0.0);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
-    Some(finding(
-        effect,
-        &name,
-        BTreeMap::from([("stiffness", stiffness)]),
-        total / range,
-        gain,
-        BY_SECOND_ENCODER,
-    ))
+    Some(finding(effect, &name, BTreeMap::from([("stiffness", stiffness)]), total / range, gain, BY_SECOND_ENCODER))
 }
 
 /// The sensors that show what the torque does not, in the JSON and in words.
@@ -247,28 +231,14 @@ fn between_current_and_sensor(data: &Data, joint: usize, inputs: &[Input<'_>]) -
         let effect = Effect::of(&CoulombFriction).on(name.clone());
         let effect = effect.with("level", level.value);
         let share = level.value / torque;
-        list.push(finding(
-            effect,
-            &name,
-            BTreeMap::from([("level", level)]),
-            share,
-            gain,
-            place,
-        ));
+        list.push(finding(effect, &name, BTreeMap::from([("level", level)]), share, gain, place));
     }
     if result.coefficients[1] > 0.0 && result.is_clear(1) {
         let coefficient = result.parameter(1, Quantity::Damping.unit(kind));
         let effect = Effect::of(&ViscousFriction).on(name.clone());
         let effect = effect.with("coefficient", coefficient.value);
         let share = coefficient.value * data.scales.speed[joint] / torque;
-        list.push(finding(
-            effect,
-            &name,
-            BTreeMap::from([("coefficient", coefficient)]),
-            share,
-            gain,
-            place,
-        ));
+        list.push(finding(effect, &name, BTreeMap::from([("coefficient", coefficient)]), share, gain, place));
     }
     list
 }
@@ -288,10 +258,7 @@ fn finding(
         share_by_joint: BTreeMap::from([(joint.to_owned(), share)]),
         held_out_gain: gain,
         sensor: Some(sensor),
-        place: Place {
-            state,
-            ..Place::default()
-        },
+        place: Place { state, ..Place::default() },
         ..Finding::of(effect)
     }
 }

@@ -24,12 +24,8 @@ use crate::thresholds::{LISTED_SHARE, SUREST};
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
     let problem = last.problem();
     let standing = |member: &Member| standing(&last.study, &problem, &last.judged.named, member.candidate);
-    let standings: Vec<(&Member, Standing)> = last
-        .judged
-        .members
-        .iter()
-        .map(|member| (member, standing(member)))
-        .collect();
+    let standings: Vec<(&Member, Standing)> =
+        last.judged.members.iter().map(|member| (member, standing(member))).collect();
     let beside = possible_beside(last, &standings);
     standings
         .iter()
@@ -38,9 +34,7 @@ pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
             if let Some(first) = list.first_mut() {
                 widen(first, last, &problem, member, &beside);
             }
-            list.into_iter()
-                .map(|finding| (finding, Some(member.candidate)))
-                .collect::<Vec<_>>()
+            list.into_iter().map(|finding| (finding, Some(member.candidate))).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -66,10 +60,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let few_links = last.payload.filter(|(payload, _)| *payload == member.candidate);
     let over_links = few_links.map(|(_, nats)| nats);
     let over_one_joint = OnOneJoint::of(study, &last.judged.named, member.candidate).map(|one| one.margin);
-    let evidence = over_links
-        .into_iter()
-        .chain(over_one_joint)
-        .fold(member.evidence, f64::min);
+    let evidence = over_links.into_iter().chain(over_one_joint).fold(member.evidence, f64::min);
     let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
     let as_links = is_doubtful.then(|| (Hypothesis::of(&InertialParameters), None));
     let change = change(last, member.candidate);
@@ -81,11 +72,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
             start.value += shift;
             start.ci95 = start.ci95.map(|end| end + shift);
         }
-        let share = if k == 0 {
-            member.share()
-        } else {
-            rotor_share(last, candidate)
-        };
+        let share = if k == 0 { member.share() } else { rotor_share(last, candidate) };
         // A mass that may be zero is that of no body: only moments are determined, which a link may have, too. A change that may be zero is
         // no clear change, and a gap or a delay that may be zero is none.
         let spec = named.effect.spec();
@@ -100,11 +87,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
             } else {
-                candidate
-                    .joint
-                    .map(|joint| (joint_name(joint), share))
-                    .into_iter()
-                    .collect()
+                candidate.joint.map(|joint| (joint_name(joint), share)).into_iter().collect()
             },
             held_out_gain: gain,
             confusable_with: if k == 0 {
@@ -120,11 +103,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
                 Vec::new()
             },
             confusable_with_pairs: if k == 0 {
-                standing
-                    .pairs
-                    .iter()
-                    .map(|pair| pair.each_ref().map(confusable))
-                    .collect()
+                standing.pairs.iter().map(|pair| pair.each_ref().map(confusable)).collect()
             } else {
                 Vec::new()
             },
@@ -151,14 +130,7 @@ fn change(last: &FinalFit, candidate: usize) -> Option<Change> {
     // What remains of a spring today may be a part of links that are wrong.
     let may_remain =
         this.hypothesis.spec().may_be_inertial && this.joint.is_some() && study.strengths.strongest() > 0.0;
-    let was_there = last
-        .judged
-        .named
-        .set
-        .iter()
-        .filter(|&&other| study.always_acts(other))
-        .any(is_beside)
-        || is_known;
+    let was_there = last.judged.named.set.iter().filter(|&&other| study.always_acts(other)).any(is_beside) || is_known;
     match Acts::of(&study.terms(candidate)) {
         Acts::Always => None,
         Acts::Since(_) if was_there => Some(Change::Increased),
@@ -197,15 +169,9 @@ fn place(last: &FinalFit, candidate: &Candidate) -> Place {
         };
     }
     if let Some(window) = candidate.window(table) {
-        return Place {
-            time: vec![window],
-            ..Place::default()
-        };
+        return Place { time: vec![window], ..Place::default() };
     }
     let joint = &arm.joints()[candidate.joint.unwrap_or(0)];
     let kind = candidate.hypothesis.kind.get();
-    Place {
-        state: kind.region(&candidate.terms(table), joint.kind),
-        ..Place::default()
-    }
+    Place { state: kind.region(&candidate.terms(table), joint.kind), ..Place::default() }
 }

@@ -27,10 +27,7 @@ pub fn widen(last: &FinalFit, fit: &BTreeMap<String, JointFit>, findings: &mut [
         for main in finding.as_effect.spec().main {
             if let Some(size) = finding.parameters.get_mut(main) {
                 let [low, high] = size.ci95;
-                size.ci95 = [
-                    low.min(LEAST_OF_SEEN_GAP * size.value),
-                    high.max(LARGEST_OF_SEEN_GAP * size.value),
-                ];
+                size.ci95 = [low.min(LEAST_OF_SEEN_GAP * size.value), high.max(LARGEST_OF_SEEN_GAP * size.value)];
             }
         }
     }

@@ -58,39 +58,18 @@ pub fn leave_out_single_links(
     })
 }
 
-const KEYS: [&str; PER_LINK] = [
-    "mass", "com_x", "com_y", "com_z", "ixx", "ixy", "iyy", "ixz", "iyz", "izz",
-];
-const UNITS: [&str; PER_LINK] = [
-    "kg", "m", "m", "m", "kg m²", "kg m²", "kg m²", "kg m²", "kg m²", "kg m²",
-];
+const KEYS: [&str; PER_LINK] = ["mass", "com_x", "com_y", "com_z", "ixx", "ixy", "iyy", "ixz", "iyz", "izz"];
+const UNITS: [&str; PER_LINK] = ["kg", "m", "m", "m", "kg m²", "kg m²", "kg m²", "kg m²", "kg m²", "kg m²"];
 
 fn numbers(body: &Inertia) -> [f64; PER_LINK] {
     let t = |a: usize, b: usize| body.tensor[(a, b)];
     let c = body.com;
-    [
-        body.mass,
-        c.x,
-        c.y,
-        c.z,
-        t(0, 0),
-        t(0, 1),
-        t(1, 1),
-        t(0, 2),
-        t(1, 2),
-        t(2, 2),
-    ]
+    [body.mass, c.x, c.y, c.z, t(0, 0), t(0, 1), t(1, 1), t(0, 2), t(1, 2), t(2, 2)]
 }
 
 /// The inertial parameters of the links by the background of the final fit.
 pub fn inertials(last: &FinalFit) -> Inertials {
-    let FinalFit {
-        study,
-        judged,
-        resampled,
-        held,
-        ..
-    } = last;
+    let FinalFit { study, judged, resampled, held, .. } = last;
     let (data, table, strengths) = (&study.data, &study.table, &study.strengths);
     let dof = data.arm.dof();
     if strengths.strongest() == 0.0 {
@@ -118,11 +97,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let name = data.arm.joints()[link].name.clone();
         list.effects.push(InertialParameters::effect(name.clone(), &estimate));
         let columns: Vec<usize> = places.iter().flatten().map(|&place| resampled.columns[place]).collect();
-        let values: Vec<f64> = places
-            .iter()
-            .flatten()
-            .map(|&place| resampled.estimate[place])
-            .collect();
+        let values: Vec<f64> = places.iter().flatten().map(|&place| resampled.estimate[place]).collect();
         for (joint, share) in shares[link].iter_mut().enumerate() {
             let torque = table.torque(joint, &columns, &values);
             *share = data.share(joint, table.spread(joint, &data.fitted, &torque));
@@ -130,10 +105,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let prior = study.prior_variances(link);
         let determined = std::array::from_fn(|parameter| {
             let Some(place) = places[parameter] else { return 0.0 };
-            let draws = resampled
-                .draws
-                .iter()
-                .map(|draw| draw[place] - resampled.estimate[place]);
+            let draws = resampled.draws.iter().map(|draw| draw[place] - resampled.estimate[place]);
             let variance = draws.map(|d| d * d).sum::<f64>() / resampled.draws.len() as f64;
             (1.0 - variance / prior[parameter].max(1e-300)).clamp(0.0, 1.0)
         });
@@ -146,12 +118,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
             .collect();
         let share = shares[link].iter().copied().fold(0.0, f64::max);
         let nominal_mass = data.arm.joints()[link].inertia.mass;
-        let link = LinkInertials {
-            nominal_mass,
-            parameters,
-            determined,
-            share,
-        };
+        let link = LinkInertials { nominal_mass, parameters, determined, share };
         list.links.insert(name, link);
     }
     let (evidence, outside) = study.evidence_of_inertials(held.as_ref(), &judged.named);
@@ -181,9 +148,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         .collect();
     let by_joint = |shares: &[f64]| -> BTreeMap<String, f64> {
         let named = (0..dof).filter(|&joint| shares[joint] > LISTED_SHARE);
-        named
-            .map(|joint| (data.arm.joints()[joint].name.clone(), shares[joint]))
-            .collect()
+        named.map(|joint| (data.arm.joints()[joint].name.clone(), shares[joint])).collect()
     };
     let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
     // If hardly anything is explained, the background compensates a model that does not fit.
@@ -207,9 +172,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         others.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
         let forms = in_place_of_link(study, &judged.named, link);
         let lost = others.iter().map(|(_, lost)| lost[0]);
-        let margin = lost
-            .chain(forms.iter().map(|(beyond, _)| *beyond))
-            .fold(score.min(constants), f64::min);
+        let margin = lost.chain(forms.iter().map(|(beyond, _)| *beyond)).fold(score.min(constants), f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
             effect: InertialParameters.spec().name,
@@ -259,20 +222,12 @@ pub fn inertials(last: &FinalFit) -> Inertials {
     let has_payload = judged.members.iter().any(|member| study.is_payload(member.candidate));
     for &link in apart.iter().filter(|&&link| !(has_payload && link + 1 == dof)) {
         let name = &data.arm.joints()[link].name;
-        let parameters = list
-            .links
-            .get(name)
-            .map(|link| link.parameters.clone())
-            .unwrap_or_default();
+        let parameters = list.links.get(name).map(|link| link.parameters.clone()).unwrap_or_default();
         add(Some(link), &shares[link], parameters);
     }
     if common >= LEAST_WRONG_EVERYWHERE {
         let (low, high) = strengths.around_common();
-        let relative = Parameter {
-            value: common,
-            ci95: [low, high],
-            unit: "1",
-        };
+        let relative = Parameter { value: common, ci95: [low, high], unit: "1" };
         add(None, &together, BTreeMap::from([("relative", relative)]));
     }
     list
@@ -293,11 +248,7 @@ mod tests {
     }
 
     fn residual(joint: &str, lasts: bool) -> Unexplained {
-        let window = TimeWindow {
-            recording: "r.csv".into(),
-            start: 1.0,
-            end: 2.0,
-        };
+        let window = TimeWindow { recording: "r.csv".into(), start: 1.0, end: 2.0 };
         Unexplained {
             joint: joint.to_owned(),
             share: 0.1,
@@ -314,10 +265,7 @@ mod tests {
             let findings = [link(None, &["a", "b", "c"]), link(Some("b"), &["a", "b"])];
             let mut findings: Vec<(Finding, Option<usize>)> = findings.map(|finding| (finding, None)).into();
             let note = leave_out_single_links(&mut findings, residuals);
-            (
-                findings.into_iter().map(|(finding, _)| finding.joint).collect(),
-                note.is_some(),
-            )
+            (findings.into_iter().map(|(finding, _)| finding.joint).collect(), note.is_some())
         };
         let both = vec![None, Some("b".to_owned())];
         assert_eq!(left(&[]), (both.clone(), false));

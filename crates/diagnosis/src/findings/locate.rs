@@ -18,13 +18,7 @@ pub fn locate(data: &Data, table: &Table, residual: &[Vec<f64>], augmented: &[Ve
         .into_par_iter()
         .filter_map(|joint| {
             let moving = &table.joints[joint].moving;
-            on_joint(
-                data,
-                moving,
-                &states[joint],
-                joint,
-                [&residual[joint], &augmented[joint]],
-            )
+            on_joint(data, moving, &states[joint], joint, [&residual[joint], &augmented[joint]])
         })
         .collect()
 }
@@ -101,11 +95,7 @@ fn on_joint(
         let mut sorted: Vec<usize> = rows.clone();
         sorted.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
         // The region near a reversal is the slowest bin; the others are tried in turn.
-        let bins = if axis == Axis::NearReversal {
-            0..1
-        } else {
-            0..REGION_BINS
-        };
+        let bins = if axis == Axis::NearReversal { 0..1 } else { 0..REGION_BINS };
         let best = bins
             .map(|bin| &sorted[sorted.len() * bin / REGION_BINS..sorted.len() * (bin + 1) / REGION_BINS])
             .filter(|bin| !bin.is_empty())

@@ -56,26 +56,13 @@ pub struct Least {
 
 /// The least detectable size of `candidate`, whose `column` is as visible as `visibility` tells. `None` if its size is not a coefficient.
 pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: &Visibility) -> Option<Least> {
-    let Detectability::Linear {
-        is_of_first,
-        is_of_all_torque,
-        ..
-    } = candidate.hypothesis.spec().detectability
-    else {
+    let Detectability::Linear { is_of_first, is_of_all_torque, .. } = candidate.hypothesis.spec().detectability else {
         return None;
     };
     let least = visibility.least(needed(last, candidate));
-    let share = if is_of_all_torque {
-        least
-    } else {
-        least * visibility.spread / visibility.torque.max(1e-300)
-    };
+    let share = if is_of_all_torque { least } else { least * visibility.spread / visibility.torque.max(1e-300) };
     let (study, fit) = (&last.study, &last.judged.named.fit);
-    let size = if is_of_first {
-        least / fit.coefficient(candidate.columns[0]).max(0.0)
-    } else {
-        least
-    };
+    let size = if is_of_first { least / fit.coefficient(candidate.columns[0]).max(0.0) } else { least };
     let is_beyond = share > BEYOND
         || is_beyond_a_factor(candidate, size)
         || is_beyond_physics(least, column, candidate, &study.table, fit, &study.data.arm);
@@ -86,10 +73,7 @@ pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: 
 /// Whether the main parameter of `candidate` is a factor, and `size` so far from one that the factor may be zero.
 fn is_beyond_a_factor(candidate: &Candidate, size: f64) -> bool {
     let spec = candidate.hypothesis.spec();
-    let main = spec
-        .parameters
-        .iter()
-        .find(|parameter| spec.main.first() == Some(&parameter.key));
+    let main = spec.parameters.iter().find(|parameter| spec.main.first() == Some(&parameter.key));
     main.is_some_and(|main| main.neutral == 1.0) && size >= 1.0
 }
 
@@ -97,11 +81,8 @@ fn is_beyond_a_factor(candidate: &Candidate, size: f64) -> bool {
 pub fn not_testable(last: &FinalFit) -> Vec<NotObservable> {
     let (data, products) = (&last.study.data, &last.products);
     let dof = data.motions.dof;
-    let mut list: Vec<NotObservable> = (0..dof)
-        .into_par_iter()
-        .flat_map_iter(|joint| on_joint(last, joint))
-        .chain(on_arm(last))
-        .collect();
+    let mut list: Vec<NotObservable> =
+        (0..dof).into_par_iter().flat_map_iter(|joint| on_joint(last, joint)).chain(on_arm(last)).collect();
     for joint in 0..dof {
         if products.count[joint] > 0.0 {
             continue;
@@ -137,22 +118,13 @@ fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
         let Detectability::OfArm { columns } = kind.spec().detectability else {
             continue;
         };
-        let is_found = selected
-            .set
-            .iter()
-            .any(|&c| study.candidates[c].hypothesis.kind == kind);
+        let is_found = selected.set.iter().any(|&c| study.candidates[c].hypothesis.kind == kind);
         let always = |&c: &usize| study.candidates[c].hypothesis.kind == kind && study.always_acts(c);
-        let forms: Vec<&Candidate> = (0..study.candidates.len())
-            .filter(always)
-            .map(|c| &study.candidates[c])
-            .collect();
+        let forms: Vec<&Candidate> = (0..study.candidates.len()).filter(always).map(|c| &study.candidates[c]).collect();
         let (Some(&key), Some(candidate), false) = (kind.spec().main.first(), forms.first(), is_found) else {
             continue;
         };
-        let needed = forms
-            .iter()
-            .map(|form| needed(last, form))
-            .fold(f64::INFINITY, f64::min);
+        let needed = forms.iter().map(|form| needed(last, form)).fold(f64::INFINITY, f64::min);
         let least = |&column: &usize| {
             // Links that are wrong by more would explain a part of it, and cost evidence themselves.
             let beside = |(products, other): &(Products, Selection)| {
@@ -216,18 +188,12 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
             });
         };
         let excludes = |a: Kind, b: Kind| a.spec().excludes.contains(&b.spec().name);
-        let is_excluded = found
-            .iter()
-            .any(|&other| excludes(kind, other) || excludes(other, kind));
+        let is_excluded = found.iter().any(|&other| excludes(kind, other) || excludes(other, kind));
         match kind.spec().detectability {
             Detectability::Sized { .. } if is_excluded => add(EXPLAINED, None, None),
             Detectability::Never | Detectability::OfArm { .. } => {}
             Detectability::Limit { because } => add(because, None, Some(largest_torque(&study.data, joint))),
-            Detectability::Sized {
-                because,
-                if_none,
-                is_seen_below,
-            } => {
+            Detectability::Sized { because, if_none, is_seen_below } => {
                 let may_be_named = |size: f64| {
                     let effect = Effect::of(kind.get()).with(key, size);
                     kind.get().is_certain(&effect, &|_| None, 0.0)
@@ -294,9 +260,7 @@ fn in_turn() -> impl Iterator<Item = Kind> {
 fn largest_torque(data: &Data, joint: usize) -> f64 {
     let chunks = data.motions.chunks.iter();
     let fitted = chunks.filter(|chunk| data.fitted[chunk.recording]);
-    fitted
-        .flat_map(|chunk| &chunk.tau[joint])
-        .fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
+    fitted.flat_map(|chunk| &chunk.tau[joint]).fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
 }
 
 fn of(candidates: &[Candidate], kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {
@@ -332,7 +296,6 @@ fn is_seen(last: &FinalFit, candidate: &Candidate, joint: usize) -> bool {
 /// The standard deviation of a column on a joint's moving training rows.
 fn spread(last: &FinalFit, joint: usize, column: usize) -> f64 {
     let table = &last.study.table;
-    table.place[joint][column].map_or(0.0, |place| {
-        table.spread(joint, &last.study.data.fitted, &table.joints[joint].x[place])
-    })
+    table.place[joint][column]
+        .map_or(0.0, |place| table.spread(joint, &last.study.data.fitted, &table.joints[joint].x[place]))
 }

@@ -31,10 +31,7 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
     let study = &last.study;
     let candidate = &study.candidates[member.candidate];
     let is_drag = candidate.hypothesis.is(&QuadraticDrag);
-    let (true, [own]) = (
-        is_drag || candidate.hypothesis.is_plain_friction(),
-        &candidate.columns[..],
-    ) else {
+    let (true, [own]) = (is_drag || candidate.hypothesis.is_plain_friction(), &candidate.columns[..]) else {
         return;
     };
     // What sets in within the recordings, sets in alone; what changed since those from before may have changed beside the other friction.
@@ -75,16 +72,12 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
         let value = fit.coefficients[fit.coefficients.len() - count];
         Some([value, covariance[(0, 0)].sqrt()])
     };
-    let other = (0..study.candidates.len())
-        .find(is_other)
-        .map(|other| study.terms(other));
+    let other = (0..study.candidates.len()).find(is_other).map(|other| study.terms(other));
     let drag = beside.iter().find(|(_, on)| *on == candidate.joint && !is_drag);
     let drag = drag.and_then(|&(drag, _)| {
         let is_usual = |index| study.terms(index).iter().all(|term: &Term| term.sizes[0] == TURBULENT);
         let is_this = |&index: &usize| study.candidates[index].hypothesis == drag && is_free(index) && is_usual(index);
-        (0..study.candidates.len())
-            .find(is_this)
-            .map(|index| study.terms(index))
+        (0..study.candidates.len()).find(is_this).map(|index| study.terms(index))
     });
     if other.is_none() && drag.is_none() {
         return;
@@ -125,11 +118,7 @@ mod tests {
     #[test]
     fn an_interval_holds_the_one_beside_the_other_friction() {
         let widened = |value: f64, times: f64| {
-            let mut parameter = Parameter {
-                value: 4.0,
-                ci95: [3.0, 5.0],
-                unit: "N m",
-            };
+            let mut parameter = Parameter { value: 4.0, ci95: [3.0, 5.0], unit: "N m" };
             widen_to(&mut parameter, value, times);
             parameter.ci95
         };

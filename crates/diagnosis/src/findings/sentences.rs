@@ -31,10 +31,8 @@ pub fn constant_torques(constants: &BTreeMap<String, Parameter>) -> Option<Strin
     if constants.is_empty() {
         return None;
     }
-    let list: Vec<String> = constants
-        .iter()
-        .map(|(joint, offset)| format!("{joint} {} {}", number(offset.value), offset.unit))
-        .collect();
+    let list: Vec<String> =
+        constants.iter().map(|(joint, offset)| format!("{joint} {} {}", number(offset.value), offset.unit)).collect();
     Some(format!(
         "the corrected model adds constant torques that no finding names, because most joints have a small one, or because they \
          may be a part of an unexplained residual: {}. Their torque sensors may \
@@ -82,10 +80,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(&str, &Parameter, Written)
     let form_differs = had_other_form(&finding.as_effect);
     let mut text = match (finding.change, finding.parameters.get("onset")) {
         (Some(Change::Added), _) if form_differs => format!("{text}, of another form in the recordings from before"),
-        (Some(Change::Added), _) => format!(
-            "{text}, {}",
-            finding.as_effect.kind().get().before_it(&finding.as_effect)
-        ),
+        (Some(Change::Added), _) => format!("{text}, {}", finding.as_effect.kind().get().before_it(&finding.as_effect)),
         (Some(Change::Increased), _) => format!("{text}, in addition to that in the recordings from before"),
         (Some(Change::Removed), _) => format!("{text}, in the recordings from before only"),
         (Some(Change::Reduced), _) => format!("{text} less than in the recordings from before"),
@@ -107,12 +102,7 @@ pub fn is_undetermined(finding: &Finding) -> bool {
 /// Whether an effect states a level of dry friction that was there before it changed.
 fn had_other_form(effect: &Effect) -> bool {
     let generalises = effect.spec().generalises.is_some();
-    generalises
-        && effect
-            .kind()
-            .get()
-            .dry_friction(effect)
-            .is_some_and(|level| level > 0.0)
+    generalises && effect.kind().get().dry_friction(effect).is_some_and(|level| level > 0.0)
 }
 
 /// A ratio of standard deviations in words; a ratio above one is not given as a percentage.
@@ -133,10 +123,8 @@ pub fn not_compared(data: &Data) -> Option<String> {
         let only_there =
             |list: &&Vec<usize>| !list.is_empty() && list.iter().all(|&at| motions.is_before(at) == is_before);
         let joints = data.arm.joints().iter().zip(&moved);
-        let names: Vec<&str> = joints
-            .filter(|(_, list)| only_there(list))
-            .map(|(joint, _)| joint.name.as_str())
-            .collect();
+        let names: Vec<&str> =
+            joints.filter(|(_, list)| only_there(list)).map(|(joint, _)| joint.name.as_str()).collect();
         names.join(", ")
     };
     let parts = [
@@ -146,10 +134,7 @@ pub fn not_compared(data: &Data) -> Option<String> {
     let parts = parts.into_iter().filter(|(_, names)| !names.is_empty());
     let parts: Vec<String> = parts.map(|(which, names)| format!("{which}: {names}")).collect();
     (!parts.is_empty()).then(|| {
-        format!(
-            "changes of the friction and the drives of some joints are not testable ({})",
-            parts.join("; ")
-        )
+        format!("changes of the friction and the drives of some joints are not testable ({})", parts.join("; "))
     })
 }
 
@@ -210,12 +195,10 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
         let largest = finding.share_by_joint.iter().max_by(|a, b| a.1.total_cmp(b.1));
         largest.map(|(joint, _)| joint.clone())
     });
-    let held_out = at
-        .and_then(|joint| fit.get(&joint).map(|fit| (joint, *fit)))
-        .and_then(|(joint, fit)| {
-            let (before, after) = (fit.held_out_nrmse_nominal?, fit.held_out_nrmse_augmented?);
-            Some((joint, before, after))
-        });
+    let held_out = at.and_then(|joint| fit.get(&joint).map(|fit| (joint, *fit))).and_then(|(joint, fit)| {
+        let (before, after) = (fit.held_out_nrmse_nominal?, fit.held_out_nrmse_augmented?);
+        Some((joint, before, after))
+    });
     let place = finding.joint.as_deref().unwrap_or("the whole arm");
     if let (false, Some(_), Some(between)) = (finding.corrects, &finding.joint, &finding.place.state) {
         let smaller = finding.held_out_gain.map_or_else(String::new, |gain| {
@@ -243,11 +226,7 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
 /// That a known gap or spring between drive and link was not subtracted: it was not found, or not looked for because the cut-off
 /// `is_low`.
 pub fn not_subtracted(known: &Effect, is_low: bool) -> String {
-    let what = format!(
-        "the known {} on {}",
-        known.spec().title,
-        known.joint().unwrap_or("the arm")
-    );
+    let what = format!("the known {} on {}", known.spec().title, known.joint().unwrap_or("the arm"));
     if is_low {
         format!(
             "{what} is not subtracted, because effects between drive and link are not looked for with a cut-off below {LEAST_FOR_DYNAMICS} Hz"
@@ -325,11 +304,7 @@ mod tests {
     fn the_same_change_on_several_joints_is_told_once() {
         let changed = |joint: &str, factor: f64| {
             let effect = Effect::of(&TorqueScale).on(joint).with("factor", factor);
-            let parameter = Parameter {
-                value: factor,
-                ci95: [factor - 0.02, factor + 0.02],
-                unit: "1",
-            };
+            let parameter = Parameter { value: factor, ci95: [factor - 0.02, factor + 0.02], unit: "1" };
             Finding {
                 change: Some(Change::Added),
                 joint: Some(joint.to_owned()),
@@ -337,21 +312,10 @@ mod tests {
                 ..Finding::of(effect)
             }
         };
-        let findings = [
-            changed("d", 1.1),
-            changed("b", 1.3),
-            changed("a", 1.1),
-            changed("c", 1.1),
-        ];
+        let findings = [changed("d", 1.1), changed("b", 1.3), changed("a", 1.1), changed("c", 1.1)];
         let phrases = changes(findings.iter(), |joint| "abcd".find(joint));
         assert_eq!(phrases.len(), 2, "{phrases:?}");
-        assert!(
-            phrases[0].starts_with("a, c and d: a measured torque of 1.10 times"),
-            "{phrases:?}"
-        );
-        assert!(
-            phrases[1].starts_with("b: a measured torque of 1.30 times"),
-            "{phrases:?}"
-        );
+        assert!(phrases[0].starts_with("a, c and d: a measured torque of 1.10 times"), "{phrases:?}");
+        assert!(phrases[1].starts_with("b: a measured torque of 1.30 times"), "{phrases:?}");
     }
 }

@@ -28,11 +28,7 @@ pub fn traces(last: &FinalFit, findings: &[(Finding, Option<usize>)]) -> Traces 
             (0..dof)
                 .map(|joint| {
                     let acts = columns.iter().any(|&column| table.place[joint][column].is_some());
-                    if acts {
-                        table.torque(joint, &columns, &values)
-                    } else {
-                        Vec::new()
-                    }
+                    if acts { table.torque(joint, &columns, &values) } else { Vec::new() }
                 })
                 .collect()
         })
@@ -41,17 +37,11 @@ pub fn traces(last: &FinalFit, findings: &[(Finding, Option<usize>)]) -> Traces 
     let state = |pick: &dyn Fn(&crate::data::motion::Chunk, usize) -> f64| -> Vec<f64> {
         let chunks = data.motions.chunks.iter();
         chunks
-            .flat_map(|chunk| {
-                (0..chunk.rows())
-                    .map(|row| pick(chunk, chunk.tick_of(row)))
-                    .collect::<Vec<_>>()
-            })
+            .flat_map(|chunk| (0..chunk.rows()).map(|row| pick(chunk, chunk.tick_of(row))).collect::<Vec<_>>())
             .collect()
     };
     let each = |pick: &dyn Fn(&crate::data::motion::Chunk, usize, usize) -> f64| -> Vec<Vec<f64>> {
-        (0..dof)
-            .map(|joint| state(&|chunk, tick| pick(chunk, joint, tick)))
-            .collect()
+        (0..dof).map(|joint| state(&|chunk, tick| pick(chunk, joint, tick))).collect()
     };
     let q = each(&|chunk, joint, tick| chunk.q[joint][tick]);
     let qd = each(&|chunk, joint, tick| chunk.qd[joint][tick]);
@@ -66,22 +56,13 @@ pub fn traces(last: &FinalFit, findings: &[(Finding, Option<usize>)]) -> Traces 
             let cut = |signals: &[Vec<f64>]| -> Vec<Vec<f64>> {
                 signals
                     .iter()
-                    .map(|signal| {
-                        if signal.is_empty() {
-                            Vec::new()
-                        } else {
-                            signal[rows.clone()].to_vec()
-                        }
-                    })
+                    .map(|signal| if signal.is_empty() { Vec::new() } else { signal[rows.clone()].to_vec() })
                     .collect()
             };
             Trace {
                 name: source.name.clone(),
                 held_out: source.held_out,
-                time: times[rows.clone()]
-                    .iter()
-                    .map(|&time| data.motions.own_time(recording, time))
-                    .collect(),
+                time: times[rows.clone()].iter().map(|&time| data.motions.own_time(recording, time)).collect(),
                 q: cut(&q),
                 qd: cut(&qd),
                 qdd: cut(&qdd),
@@ -90,11 +71,7 @@ pub fn traces(last: &FinalFit, findings: &[(Finding, Option<usize>)]) -> Traces 
                 residual_augmented: cut(&last.residual),
                 residual_exported: cut(&last.exported),
                 effects: torques.iter().map(|torque| cut(torque)).collect(),
-                moving: table
-                    .joints
-                    .iter()
-                    .map(|joint| joint.moving[rows.clone()].to_vec())
-                    .collect(),
+                moving: table.joints.iter().map(|joint| joint.moving[rows.clone()].to_vec()).collect(),
             }
         })
         .collect();

@@ -74,21 +74,11 @@ pub fn search(
             if table.moving_rows(joint, &data.fitted).len() < LEAST_TRANSIENT_ROWS {
                 return 0.0;
             }
-            1.0 / usual(data, table, joint, residual)
-                .powi(2)
-                .max(data.floor[joint])
-                .max(1e-300)
+            1.0 / usual(data, table, joint, residual).powi(2).max(data.floor[joint]).max(1e-300)
         })
         .collect();
     let windows = scan::contacts(table, &times, residual, &weights, force, &held, SEARCHED_TRANSIENTS);
-    let residuals = Residuals {
-        data,
-        table,
-        force,
-        residual,
-        times,
-        weights,
-    };
+    let residuals = Residuals { data, table, force, residual, times, weights };
     let mut pushes: Vec<Push> = Vec::new();
     for (from, to) in windows {
         let Some((recording, powers)) = residuals.power((from, to)) else {
@@ -102,18 +92,11 @@ pub fn search(
         let (force, explained) = residuals.force((from, to));
         let is_early = data.motions.is_at_a_beginning(recording, to);
         if explained > ONE_FORCE && !is_contact_named && !is_early {
-            pushes.push(Push {
-                window: [from, to],
-                source: recording,
-                force,
-                explained,
-            });
+            pushes.push(Push { window: [from, to], source: recording, force, explained });
         } else {
             // The joint on which the transient exceeds the usual residual most.
             let window = (from, to);
-            let at = (0..data.motions.dof)
-                .map(|joint| (powers[joint], joint))
-                .max_by(|a, b| a.0.total_cmp(&b.0));
+            let at = (0..data.motions.dof).map(|joint| (powers[joint], joint)).max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, joint)) = at {
                 let rms = data.share(joint, residuals.rms(joint, window));
                 let entry = transients.unexplained.entry(joint).or_default();
@@ -127,14 +110,7 @@ pub fn search(
         }
     }
     // Transients that recur are an error of the model and not contacts.
-    if pushes.len()
-        + transients
-            .unexplained
-            .values()
-            .map(|entry| entry.1.len())
-            .sum::<usize>()
-        > MOST_TRANSIENTS
-    {
+    if pushes.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_TRANSIENTS {
         return Transients::default();
     }
     transients.contact = residuals.contact(&pushes);
@@ -157,10 +133,7 @@ fn usual(data: &Data, table: &Table, joint: usize, residual: &[Vec<f64>]) -> f64
         let mut from = rows.start;
         while from < rows.end {
             let to = (from + length).min(rows.end);
-            let values: Vec<f64> = (from..to)
-                .filter(|&row| moving[row])
-                .map(|row| residual[joint][row])
-                .collect();
+            let values: Vec<f64> = (from..to).filter(|&row| moving[row]).map(|row| residual[joint][row]).collect();
             if values.len() * 2 > length {
                 stretches.extend(rms(values));
             }
@@ -198,14 +171,10 @@ impl Residuals<'_> {
         }
         let recording = at?;
         let all = self.table.rows[recording].clone();
-        let all = all
-            .filter(|&row| self.times[row] >= window.0 && self.times[row] <= window.1)
-            .count() as f64;
+        let all = all.filter(|&row| self.times[row] >= window.0 && self.times[row] <= window.1).count() as f64;
         // A joint that hardly moves in the window only stops or starts there, and its dry friction is undetermined.
-        let powers = sums
-            .iter()
-            .map(|&(sum, moving)| if moving > LEAST_MOVING * all { sum / moving } else { 0.0 })
-            .collect();
+        let powers =
+            sums.iter().map(|&(sum, moving)| if moving > LEAST_MOVING * all { sum / moving } else { 0.0 }).collect();
         Some((recording, powers))
     }
 
@@ -235,12 +204,7 @@ impl Residuals<'_> {
     fn contact(&self, pushes: &[Push]) -> Option<Finding> {
         let data = self.data;
         let strongest = pushes.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
-        let Push {
-            window: [from, to],
-            source,
-            force,
-            explained,
-        } = strongest.clone();
+        let Push { window: [from, to], source, force, explained } = strongest.clone();
         let same: Vec<[f64; 2]> = {
             let mut list: Vec<[f64; 2]> = pushes
                 .iter()
@@ -250,11 +214,8 @@ impl Residuals<'_> {
             list.sort_by(|a, b| a[0].total_cmp(&b[0]));
             list
         };
-        let exactly = |value: f64, half: f64, unit: &'static str| Parameter {
-            value,
-            ci95: [value - half, value + half],
-            unit,
-        };
+        let exactly =
+            |value: f64, half: f64, unit: &'static str| Parameter { value, ci95: [value - half, value + half], unit };
         let mut duration = exactly(to - from, CONTACT_DURATION, "s");
         duration.ci95[0] = duration.ci95[0].max(0.0);
         let spread = force.norm() * (1.0 - explained).max(0.0).sqrt();
@@ -271,20 +232,13 @@ impl Residuals<'_> {
         Some(Finding {
             parameters: BTreeMap::from([
                 ("force", exactly(force.norm(), spread, "N")),
-                (
-                    "start",
-                    exactly(data.motions.own_time(source, from), CONTACT_START, "s"),
-                ),
+                ("start", exactly(data.motions.own_time(source, from), CONTACT_START, "s")),
                 ("duration", duration),
             ]),
             share: share_by_joint.values().copied().fold(0.0, f64::max),
             share_by_joint,
             held_out_gain: Some(1.0 - (1.0 - explained).max(0.0).sqrt()),
-            place: Place {
-                time: same,
-                recording: Some(data.motions.sources[source].name.clone()),
-                state: None,
-            },
+            place: Place { time: same, recording: Some(data.motions.sources[source].name.clone()), state: None },
             ..Finding::of(effect)
         })
     }

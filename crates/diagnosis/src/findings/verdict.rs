@@ -33,10 +33,7 @@ pub fn unexplained(
             continue;
         };
         let other = candidate.hypothesis.other;
-        let on = Dependence {
-            on,
-            joint: other.map(|other| study.data.arm.joints()[other].name.clone()),
-        };
+        let on = Dependence { on, joint: other.map(|other| study.data.arm.joints()[other].name.clone()) };
         let entry = by_joint.entry(joint).or_default();
         entry.0 = entry.0.hypot(member.share());
         if !entry.1.iter().any(|(_, known)| *known == on) {
@@ -194,11 +191,7 @@ pub fn beyond_limits(
     let joints = arm.joints();
     unexplained.retain(|open| {
         let is_small = fit.get(&open.joint).is_some_and(|fit| fit.error() < STRUCTURED);
-        !is_small
-            || transients
-                .unexplained
-                .keys()
-                .any(|&joint| joints[joint].name == open.joint)
+        !is_small || transients.unexplained.keys().any(|&joint| joints[joint].name == open.joint)
     });
 }
 
@@ -226,10 +219,7 @@ pub fn not_enough(last: &FinalFit) -> Vec<String> {
     let (data, table, products) = (&last.study.data, &last.study.table, &last.products);
     let seconds = |joint: usize| -> f64 {
         let counts = table.joints[joint].count.iter().zip(&data.seconds).zip(&data.fitted);
-        counts
-            .filter(|(_, fitted)| **fitted)
-            .map(|((count, seconds), _)| *count as f64 * seconds)
-            .sum()
+        counts.filter(|(_, fitted)| **fitted).map(|((count, seconds), _)| *count as f64 * seconds).sum()
     };
     let longest = (0..data.motions.dof).map(seconds).fold(0.0, f64::max);
     // A joint slower than the noise of its positions counts as resting.

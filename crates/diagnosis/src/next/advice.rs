@@ -44,15 +44,7 @@ pub fn not_separated(
         _ => instead(finding.effect, rival.effect),
     };
     let instead = instead.to_owned();
-    NotSeparated {
-        finding,
-        rival,
-        best,
-        needed: sure,
-        kind,
-        because,
-        instead,
-    }
+    NotSeparated { finding, rival, best, needed: sure, kind, because, instead }
 }
 
 /// Why the outcome of a motion for a pair is not predicted, as an obstacle and in a sentence.
@@ -98,15 +90,7 @@ pub fn unpredicted(finding: Confusable, rival: Confusable, last: Option<&str>) -
         (Obstacle::NoPrediction, because)
     };
     let instead = instead(finding.effect, rival.effect).to_owned();
-    NotSeparated {
-        finding,
-        rival,
-        best: 0.0,
-        needed: NEARLY_NATS,
-        kind,
-        because,
-        instead,
-    }
+    NotSeparated { finding, rival, best: 0.0, needed: NEARLY_NATS, kind, because, instead }
 }
 
 /// The experiment that distinguishes two effects that no motion distinguishes.
@@ -114,15 +98,9 @@ fn instead(finding: &str, rival: &str) -> &'static str {
     let of_one = || {
         let specs = [finding, rival].map(effects::spec);
         let experiments = specs.iter().flatten().filter_map(|spec| spec.experiment);
-        experiments
-            .max_by_key(|experiment| experiment.rank)
-            .map(|experiment| experiment.text)
+        experiments.max_by_key(|experiment| experiment.rank).map(|experiment| experiment.text)
     };
-    let of_kind = || {
-        effects::spec(finding)
-            .map(|spec| spec.distinguished_by)
-            .filter(|text| !text.is_empty())
-    };
+    let of_kind = || effects::spec(finding).map(|spec| spec.distinguished_by).filter(|text| !text.is_empty());
     effects::experiment_against(finding, rival).or_else(of_one).or_else(of_kind).unwrap_or(
         "add a sensor (a torque sensor or an encoder on the link side of the gear), or attach a known load to the tool",
     )

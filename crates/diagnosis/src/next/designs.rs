@@ -62,13 +62,7 @@ pub fn all() -> Vec<Design> {
     for mix in [Mix::Steady, Mix::Beats, Mix::Swells, Mix::SlowAndFast] {
         for speed in TRIED_SPEEDS {
             for amplitude in TRIED_AMPLITUDES {
-                list.push(Design {
-                    mix,
-                    speed,
-                    amplitude,
-                    only: Vec::new(),
-                    others: 1.0,
-                });
+                list.push(Design { mix, speed, amplitude, only: Vec::new(), others: 1.0 });
             }
         }
     }
@@ -115,18 +109,10 @@ impl Design {
             Mix::Beats | Mix::SlowAndFast => 2,
             Mix::Swells => 3,
         };
-        let blank = || Sine {
-            amplitude: vec![0.0; dof],
-            frequency: vec![FREQUENCIES.0; dof],
-            phase: vec![0.0; dof],
-        };
+        let blank = || Sine { amplitude: vec![0.0; dof], frequency: vec![FREQUENCIES.0; dof], phase: vec![0.0; dof] };
         let mut sines: Vec<Sine> = (0..tones).map(|_| blank()).collect();
         for j in 0..dof {
-            let part = if self.only.is_empty() || self.only.contains(&j) {
-                1.0
-            } else {
-                self.others
-            };
+            let part = if self.only.is_empty() || self.only.contains(&j) { 1.0 } else { self.others };
             let (room, fast) = (part * amplitude * limits.room[j], part * speed * limits.speed[j]);
             if room <= 0.0 || fast <= 0.0 {
                 continue;
@@ -150,14 +136,7 @@ impl Design {
                 sine.phase[j] = rounded(TAU * (GOLDEN * (dof * tone + j + 3) as f64).fract());
             }
         }
-        Reference {
-            centre: limits.middle.clone(),
-            sines,
-            fade: Some(Fade {
-                seconds: FADE,
-                end: DURATION,
-            }),
-        }
+        Reference { centre: limits.middle.clone(), sines, fade: Some(Fade { seconds: FADE, end: DURATION }) }
     }
 }
 

@@ -57,11 +57,7 @@ impl Limits {
         let fastest = scales.speed.iter().copied().fold(0.0, f64::max);
         for (j, joint) in joints.iter().enumerate() {
             let (lower, upper) = (joint.limits.lower, joint.limits.upper);
-            let free = if (upper - lower).is_finite() {
-                LIMIT_MARGIN * (upper - lower)
-            } else {
-                0.0
-            };
+            let free = if (upper - lower).is_finite() { LIMIT_MARGIN * (upper - lower) } else { 0.0 };
             // The recorded motion may be beyond the URDF's limits.
             if upper - free >= lower + free {
                 limits.middle[j] = rounded_into(limits.middle[j], lower + free, upper - free);
@@ -115,8 +111,7 @@ impl Limits {
             reference.at(time, &mut motion);
             let (q, qd, qdd) = (&motion.q, &motion.qd, &motion.qdd);
             // The time is the motion's own: a contact is not repeated, and a drive is warm.
-            self.model
-                .predict_at(f64::INFINITY, &mut workspace, q, qd, qdd, &mut prediction);
+            self.model.predict_at(f64::INFINITY, &mut workspace, q, qd, qdd, &mut prediction);
             for (j, needed) in needed.iter_mut().enumerate() {
                 needed.position[0] = needed.position[0].min(q[j]);
                 needed.position[1] = needed.position[1].max(q[j]);
@@ -135,9 +130,7 @@ pub fn rounded(value: f64) -> f64 {
 
 /// The nearest position between two bounds, rounded to four decimals without exceeding them.
 fn rounded_into(value: f64, low: f64, high: f64) -> f64 {
-    rounded(value)
-        .max((1e4 * low).ceil() / 1e4)
-        .min((1e4 * high).floor() / 1e4)
+    rounded(value).max((1e4 * low).ceil() / 1e4).min((1e4 * high).floor() / 1e4)
 }
 
 /// The largest ratio of `needed` to the allowed values: of room, of speed, and of torque.
@@ -147,10 +140,7 @@ pub fn taken(needed: &[JointLimits]) -> [f64; 3] {
     let room = |joint: &JointLimits| {
         let [low, high] = joint.position_allowed;
         let middle = 0.5 * (low + high);
-        share(
-            (joint.position[1] - middle).max(middle - joint.position[0]),
-            0.5 * (high - low),
-        )
+        share((joint.position[1] - middle).max(middle - joint.position[0]), 0.5 * (high - low))
     };
     [
         most(&room),

@@ -121,10 +121,7 @@ impl<'a> Prospect<'a> {
         let (About { arm, offset, .. }, derivatives) = (&self.about, self.derivatives);
         let rigid = Rigid::with_derivatives(arm, &self.nominal, offset, &chunk, derivatives);
         self.add_torques(&mut chunk, &rigid);
-        let largest = chunk
-            .tau
-            .iter()
-            .map(|tau| tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs())));
+        let largest = chunk.tau.iter().map(|tau| tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs())));
         let largest = largest.collect();
         let (mut torque, mut tempo, mut rates) = (Vec::new(), Vec::new(), Vec::new());
         for j in 0..dof {
@@ -152,30 +149,19 @@ impl<'a> Prospect<'a> {
             remarks: Vec::new(),
         };
         let terms = self.bare.terms.clone();
-        let table = Table::new(
-            &motions,
-            &[rigid],
-            &data.scales,
-            terms,
-            &self.about.carried,
-            Moving::ThroughReversals,
-        );
+        let table = Table::new(&motions, &[rigid], &data.scales, terms, &self.about.carried, Moving::ThroughReversals);
         let seconds_of_all: Vec<f64> = data.seconds.iter().copied().chain([seconds]).collect();
         let new = Products::new(&table, |_| true, &seconds_of_all, &tempo, &data.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
         // The residual of the motion is predicted to be as large as that of the recordings.
-        let variance: Vec<f64> = (0..dof)
-            .map(|j| fit.rss[j].max(0.0) / self.old.count[j].max(1.0))
-            .collect();
+        let variance: Vec<f64> = (0..dof).map(|j| fit.rss[j].max(0.0) / self.old.count[j].max(1.0)).collect();
         let evidence = (0..dof)
             .map(|j| {
                 let rate = evidence_rate(tempo[j]);
                 self.old.evidence[j] / rates[j] * rate + new.count[j] * seconds * rate
             })
             .collect();
-        let floor = (0..dof)
-            .map(|j| data.noise[j] + (thresholds.tolerance * torque[j]).powi(2))
-            .collect();
+        let floor = (0..dof).map(|j| data.noise[j] + (thresholds.tolerance * torque[j]).powi(2)).collect();
         Outlook {
             products: self.old.joined(&new, &variance, evidence, floor),
             torque,
@@ -249,10 +235,7 @@ impl<'a> Prospect<'a> {
     }
 
     fn places(&self, columns: &[usize]) -> Vec<usize> {
-        columns
-            .iter()
-            .filter_map(|column| self.columns.binary_search(column).ok())
-            .collect()
+        columns.iter().filter_map(|column| self.columns.binary_search(column).ok()).collect()
     }
 
     /// The evidence (nats) in `outlook` for the finding of `pair` against its alternative, and the evidence that distinguishes

@@ -55,14 +55,8 @@ pub struct Background {
 impl Background {
     /// The same background in a table that has only `columns`, in ascending order, which contain its own.
     pub fn among(&self, columns: &[usize]) -> Self {
-        let places = self
-            .columns
-            .iter()
-            .map(|&column| columns.partition_point(|&other| other < column));
-        Self {
-            columns: places.collect(),
-            ..self.clone()
-        }
+        let places = self.columns.iter().map(|&column| columns.partition_point(|&other| other < column));
+        Self { columns: places.collect(), ..self.clone() }
     }
 }
 
@@ -79,11 +73,7 @@ impl Prior {
         moved: &[Vec<usize>],
         own_load: Option<&[f64; PER_LINK]>,
     ) -> Self {
-        let mut prior = Self {
-            nominal: parameters.to_vec(),
-            radii: radii.to_vec(),
-            ..Self::default()
-        };
+        let mut prior = Self { nominal: parameters.to_vec(), radii: radii.to_vec(), ..Self::default() };
         prior.set_bodies(&vec![0.0; parameters.len()]);
         for link in 0..prior.links.len() {
             for parameter in 0..PER_LINK {
@@ -110,11 +100,7 @@ impl Prior {
             prior.push(Term::on(&GAIN_LAW, joint), GAIN_PRIOR);
         }
         // On one or two joints, a lag may be a delay of their drives.
-        if (0..moved.len())
-            .filter(|&joint| torque[joint] > 0.0 && speed[joint] > 0.0)
-            .count()
-            >= LEAST_LAGGING
-        {
+        if (0..moved.len()).filter(|&joint| torque[joint] > 0.0 && speed[joint] > 0.0).count() >= LEAST_LAGGING {
             prior.push(Term::about(&LAG, 0), LAG_PRIOR);
         }
         for (parameter, &deviation) in own_load.into_iter().flatten().enumerate() {
@@ -126,10 +112,8 @@ impl Prior {
     /// Makes the prior quadratic about the bodies of a fit, which change the inertial parameters by `changes` (ten per link).
     pub fn set_bodies(&mut self, changes: &[f64]) {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
-        self.links = links
-            .zip(&self.radii)
-            .map(|((nominal, change), &radius)| prior_about(nominal, radius, change))
-            .collect();
+        self.links =
+            links.zip(&self.radii).map(|((nominal, change), &radius)| prior_about(nominal, radius, change)).collect();
         self.identity = Arc::default();
     }
 
@@ -149,12 +133,8 @@ impl Prior {
     /// fit's bodies are not possible, the step ends at the last possible ones before them.
     pub fn towards(&self, from: &[f64], to: &[f64]) -> (Vec<f64>, f64) {
         let step: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
-        let links = || {
-            self.nominal
-                .chunks_exact(PER_LINK)
-                .zip(from.chunks_exact(PER_LINK))
-                .zip(step.chunks_exact(PER_LINK))
-        };
+        let links =
+            || self.nominal.chunks_exact(PER_LINK).zip(from.chunks_exact(PER_LINK)).zip(step.chunks_exact(PER_LINK));
         let part = links()
             .zip(&self.radii)
             .map(|(((nominal, from), step), &radius)| possible_part(nominal, radius, from, step))
@@ -164,10 +144,7 @@ impl Prior {
             (step.transpose() * &prior.precision * &step)[(0, 0)].max(0.0).sqrt()
         });
         let length = lengths.fold(0.0, f64::max);
-        (
-            from.iter().zip(&step).map(|(from, step)| from + part * step).collect(),
-            length,
-        )
+        (from.iter().zip(&step).map(|(from, step)| from + part * step).collect(), length)
     }
 
     fn push(&mut self, term: Term, deviation: f64) {
@@ -207,17 +184,11 @@ impl Prior {
                 let is_left_out = |joint: usize| {
                     strengths.named_constants.contains(&joint) || strengths.impossible_constants.contains(&joint)
                 };
-                if term.joint.is_some_and(is_left_out) {
-                    0.0
-                } else {
-                    strengths.gain
-                }
+                if term.joint.is_some_and(is_left_out) { 0.0 } else { strengths.gain }
             }
             term if term.is(&OFFSET) => {
                 let is_named = term.joint.is_some_and(|joint| strengths.named_offsets.contains(&joint));
-                let is_nameless = term
-                    .joint
-                    .is_some_and(|joint| strengths.nameless_offsets.contains(&joint));
+                let is_nameless = term.joint.is_some_and(|joint| strengths.nameless_offsets.contains(&joint));
                 match (is_named, is_nameless) {
                     (true, _) => 0.0,
                     (false, true) => NAMELESS_OFFSET,
@@ -284,10 +255,7 @@ mod tests {
         assert!((background.precision[(0, 0)] * LAG_PRIOR.powi(2) - 1.0).abs() < 1e-12);
         assert!(prior(3).at(&late.without_lag()).is_none());
         assert!(prior(2).at(&late).is_none());
-        let wrong = Strengths {
-            links: vec![0.1; 3],
-            ..late
-        };
+        let wrong = Strengths { links: vec![0.1; 3], ..late };
         let background = prior(3).at(&wrong).expect("links differ");
         assert_eq!((background.columns.len(), background.is_lag_alone), (31, false));
     }

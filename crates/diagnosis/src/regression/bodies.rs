@@ -45,18 +45,7 @@ fn parameters_of(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
     let tensor = Matrix3::identity() * second.trace() - second;
     let (x, y, z) = (pseudo[(0, 3)], pseudo[(1, 3)], pseudo[(2, 3)]);
     let i = |a: usize, b: usize| tensor[(a, b)];
-    [
-        pseudo[(3, 3)],
-        x,
-        y,
-        z,
-        i(0, 0),
-        i(0, 1),
-        i(1, 1),
-        i(0, 2),
-        i(1, 2),
-        i(2, 2),
-    ]
+    [pseudo[(3, 3)], x, y, z, i(0, 0), i(0, 1), i(1, 1), i(0, 2), i(1, 2), i(2, 2)]
 }
 
 /// The physically consistent body nearest to `nominal` + `change` (ten inertial parameters each): relative to the nominal one,
@@ -102,11 +91,7 @@ pub fn prior_about(nominal: &[f64], radius: f64, change: &[f64]) -> Quadratic {
     // The derivative of the logarithm along a change of P (Daleckii and Krein), in the basis of the eigenvectors.
     let slope = |i: usize, k: usize| {
         let (step, mean) = (values[i] - values[k], 0.5 * (values[i] + values[k]));
-        if step.abs() < 1e-6 * mean {
-            1.0 / mean
-        } else {
-            (logs[i] - logs[k]) / step
-        }
+        if step.abs() < 1e-6 * mean { 1.0 / mean } else { (logs[i] - logs[k]) / step }
     };
     let basis = eigen.eigenvectors.transpose() * inverse;
     let directions: Vec<Matrix4<f64>> = (0..PER_LINK)
@@ -123,10 +108,7 @@ pub fn prior_about(nominal: &[f64], radius: f64, change: &[f64]) -> Quadratic {
     let about = DVector::from_column_slice(&parameters_of(&(body - floor)));
     let step =
         Cholesky::new(precision.clone()).map_or_else(|| DVector::zeros(PER_LINK), |factor| factor.solve(&gradient));
-    Quadratic {
-        precision,
-        centre: about - step,
-    }
+    Quadratic { precision, centre: about - step }
 }
 
 /// The part of `step` that may be taken from the body `nominal` + `change` (ten inertial parameters each) so that in no direction less
@@ -138,11 +120,7 @@ pub fn possible_part(nominal: &[f64], radius: f64, change: &[f64], step: &[f64])
     };
     let relative = inverse * pseudo_inertia(step) * inverse.transpose();
     let least = SymmetricEigen::new(relative).eigenvalues.min();
-    if least < LEAST_OF_STEP - 1.0 {
-        (LEAST_OF_STEP - 1.0) / least
-    } else {
-        1.0
-    }
+    if least < LEAST_OF_STEP - 1.0 { (LEAST_OF_STEP - 1.0) / least } else { 1.0 }
 }
 
 /// The pseudo-inertia of a body, enlarged where its radius of gyration is less than `radius` (m) or its mass is too small.
@@ -152,16 +130,12 @@ fn floored(parameters: &[f64], radius: f64) -> Matrix4<f64> {
     let com = pseudo.fixed_view::<3, 1>(0, 3) / mass;
     let about_com: Matrix3<f64> = pseudo.fixed_view::<3, 3>(0, 0) - mass * com * com.transpose();
     let mut eigen = SymmetricEigen::new(about_com);
-    eigen
-        .eigenvalues
-        .apply(|value| *value = value.max(mass * radius * radius));
+    eigen.eigenvalues.apply(|value| *value = value.max(mass * radius * radius));
     let second = eigen.recompose() + mass * com * com.transpose();
     let mut floored = Matrix4::zeros();
     floored.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
     floored.fixed_view_mut::<3, 1>(0, 3).copy_from(&(mass * com));
-    floored
-        .fixed_view_mut::<1, 3>(3, 0)
-        .copy_from(&(mass * com.transpose()));
+    floored.fixed_view_mut::<1, 3>(3, 0).copy_from(&(mass * com.transpose()));
     floored[(3, 3)] = mass;
     floored
 }
@@ -215,19 +189,13 @@ mod tests {
                 < 1e-9
         );
         for factor in [-0.5, 0.0, 3.0] {
-            assert_eq!(
-                possible_part(&nominal, LEAST_BODY_RADIUS, &none, &times(factor)),
-                1.0,
-                "{factor}"
-            );
+            assert_eq!(possible_part(&nominal, LEAST_BODY_RADIUS, &none, &times(factor)), 1.0, "{factor}");
         }
     }
 
     /// ½ tr(S²) of a body, by another formula: the eigenvalues of P₀⁻¹ P are those of exp(S).
     fn half_square(nominal: &[f64], change: &[f64]) -> f64 {
-        let product = floored(nominal, LEAST_BODY_RADIUS)
-            .try_inverse()
-            .expect("it is positive")
+        let product = floored(nominal, LEAST_BODY_RADIUS).try_inverse().expect("it is positive")
             * (floored(nominal, LEAST_BODY_RADIUS) + pseudo_inertia(change));
         let logs = product.complex_eigenvalues().map(|value| value.re.ln());
         0.5 * logs.norm_squared()
@@ -247,11 +215,7 @@ mod tests {
                     half_square(&nominal, &moved)
                 };
                 let expected = (at(1e-6) - at(-1e-6)) / 2e-6;
-                assert!(
-                    (slope[k] - expected).abs() < 1e-5 * expected.abs().max(1.0),
-                    "{k}: {} {expected}",
-                    slope[k]
-                );
+                assert!((slope[k] - expected).abs() < 1e-5 * expected.abs().max(1.0), "{k}: {} {expected}", slope[k]);
             }
         }
     }

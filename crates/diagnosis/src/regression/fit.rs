@@ -76,10 +76,7 @@ pub struct Fit {
 impl Fit {
     /// The coefficient of a column; zero if it is not in the fit.
     pub fn coefficient(&self, column: usize) -> f64 {
-        self.columns
-            .iter()
-            .position(|&c| c == column)
-            .map_or(0.0, |k| self.coefficients[k])
+        self.columns.iter().position(|&c| c == column).map_or(0.0, |k| self.coefficients[k])
     }
 
     /// The coefficients of some columns; zero for those that are not in the fit.
@@ -113,17 +110,11 @@ impl Products {
         let recordings: Vec<usize> = (0..table.rows.len()).filter(|&r| selected(r)).collect();
         let sum = |joint: usize| -> Gram {
             let this = &table.joints[joint];
-            let selected = this
-                .stretches
-                .iter()
-                .filter(|stretch| recordings.contains(&stretch.recording));
+            let selected = this.stretches.iter().filter(|stretch| recordings.contains(&stretch.recording));
             Gram::sum(this.x.len(), selected.map(|stretch| &stretch.gram))
         };
         let over = |joint: usize, weight: &dyn Fn(usize) -> f64| -> f64 {
-            recordings
-                .iter()
-                .map(|&r| table.joints[joint].count[r] as f64 * weight(r))
-                .sum()
+            recordings.iter().map(|&r| table.joints[joint].count[r] as f64 * weight(r)).sum()
         };
         Self {
             gram: Arc::new((0..table.dof()).map(sum).collect()),
@@ -140,18 +131,12 @@ impl Products {
 
     /// These products with another background.
     pub fn with_background(&self, background: Option<Background>) -> Self {
-        Self {
-            background: background.map(Arc::new),
-            eliminated: Arc::default(),
-            ..self.clone()
-        }
+        Self { background: background.map(Arc::new), eliminated: Arc::default(), ..self.clone() }
     }
 
     /// Whether there is a background that corrects the model, beside the lag of the torques.
     pub fn has_background(&self) -> bool {
-        self.background
-            .as_ref()
-            .is_some_and(|background| !background.is_lag_alone)
+        self.background.as_ref().is_some_and(|background| !background.is_lag_alone)
     }
 
     /// The strength of friction in the background.
@@ -175,9 +160,7 @@ impl Products {
 
     /// Minus the logarithm of the likelihood for residual sums of squares of the joints (nats).
     pub fn loss(&self, rss: &[f64]) -> f64 {
-        (0..rss.len())
-            .map(|joint| 0.5 * self.evidence[joint] * self.variance(joint, rss[joint]).ln())
-            .sum()
+        (0..rss.len()).map(|joint| 0.5 * self.evidence[joint] * self.variance(joint, rss[joint]).ln()).sum()
     }
 
     /// The loss of `fit`, which may be one to other recordings.
@@ -246,9 +229,7 @@ impl Products {
             return fit;
         }
         for _ in 1..REWEIGHTINGS {
-            weights = (0..table.dof())
-                .map(|joint| 1.0 / self.variance(joint, fit.rss[joint]))
-                .collect();
+            weights = (0..table.dof()).map(|joint| 1.0 / self.variance(joint, fit.rss[joint])).collect();
             fit = self.solve(table, columns, &weights);
         }
         fit
@@ -260,9 +241,7 @@ impl Products {
             return fit;
         }
         for _ in 1..REWEIGHTINGS {
-            let weights: Vec<f64> = (0..table.dof())
-                .map(|joint| 1.0 / self.variance(joint, fit.rss[joint]))
-                .collect();
+            let weights: Vec<f64> = (0..table.dof()).map(|joint| 1.0 / self.variance(joint, fit.rss[joint])).collect();
             let is_same = |(a, b): (&f64, &f64)| a.max(*b) < SAME_WEIGHT * a.min(*b);
             if weights.iter().zip(&fit.weights).all(is_same) {
                 break;
@@ -274,9 +253,7 @@ impl Products {
 
     /// The weights of the joints without any explanation.
     pub fn first_weights(&self) -> Vec<f64> {
-        (0..self.gram.len())
-            .map(|joint| 1.0 / (self.power(joint) + self.floor[joint]).max(1e-300))
-            .collect()
+        (0..self.gram.len()).map(|joint| 1.0 / (self.power(joint) + self.floor[joint]).max(1e-300)).collect()
     }
 
     /// Fits `columns` with fixed weights.

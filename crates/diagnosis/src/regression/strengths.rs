@@ -48,11 +48,7 @@ pub enum Part {
 impl fmt::Display for Strengths {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // A finer strength is a product of factors, with as many digits as it has.
-        let links: Vec<String> = self
-            .links
-            .iter()
-            .map(|rho| ((rho * 1e3).round() / 1e3).to_string())
-            .collect();
+        let links: Vec<String> = self.links.iter().map(|rho| ((rho * 1e3).round() / 1e3).to_string()).collect();
         write!(
             f,
             "links {}; friction {}; offsets {}; torque constants {}",
@@ -85,10 +81,7 @@ impl Strengths {
     /// These strengths without a lag of all torques.
     #[must_use]
     pub fn without_lag(&self) -> Self {
-        Self {
-            lag: false,
-            ..self.clone()
-        }
+        Self { lag: false, ..self.clone() }
     }
 
     /// ρ of a link.
@@ -117,11 +110,7 @@ impl Strengths {
     /// These strengths with the URDF's links.
     #[must_use]
     pub fn with_exact_links(&self) -> Self {
-        Self {
-            links: vec![0.0; self.links.len()],
-            least: vec![0.0; self.links.len()],
-            ..self.clone()
-        }
+        Self { links: vec![0.0; self.links.len()], least: vec![0.0; self.links.len()], ..self.clone() }
     }
 
     /// Whether some links differ from the URDF and most do not.
@@ -138,11 +127,7 @@ impl Strengths {
         // Several wrong links among links that are exact are less likely than links that are all somewhat wrong.
         let several = if common == 0.0 { apart.saturating_sub(1) } else { 0 };
         // Where all links are wrong, the torque constants are probably wrong, too.
-        let constants = if common > 0.0 {
-            CONSTANTS_BESIDE_LINKS
-        } else {
-            PER_BACKGROUND_PART
-        };
+        let constants = if common > 0.0 { CONSTANTS_BESIDE_LINKS } else { PER_BACKGROUND_PART };
         part(self.friction, PER_BACKGROUND_PART)
             + part(self.offset, PER_BACKGROUND_PART)
             + part(self.gain, constants)
@@ -155,22 +140,9 @@ impl Strengths {
     /// The strengths that are tried for one link, below and above that of most links.
     pub fn around_common(&self) -> (f64, f64) {
         let common = self.common();
-        let below = LINK_STRENGTHS
-            .into_iter()
-            .filter(|&rho| rho < common)
-            .fold(0.0, f64::max);
-        let above = LINK_STRENGTHS
-            .into_iter()
-            .filter(|&rho| rho > common)
-            .fold(f64::INFINITY, f64::min);
-        (
-            below,
-            if above.is_finite() {
-                above
-            } else {
-                BEYOND_STRONGEST * common
-            },
-        )
+        let below = LINK_STRENGTHS.into_iter().filter(|&rho| rho < common).fold(0.0, f64::max);
+        let above = LINK_STRENGTHS.into_iter().filter(|&rho| rho > common).fold(f64::INFINITY, f64::min);
+        (below, if above.is_finite() { above } else { BEYOND_STRONGEST * common })
     }
 
     /// ρ of most links.
@@ -188,30 +160,18 @@ impl Strengths {
         };
         let common = self.common();
         for rho in LINK_STRENGTHS {
-            add(Self {
-                links: vec![rho; self.links.len()],
-                ..self.clone()
-            });
+            add(Self { links: vec![rho; self.links.len()], ..self.clone() });
             // Links that differ more than most still do.
             let of_link = |&own: &f64| if own == common { rho } else { own.max(rho) };
-            add(Self {
-                links: self.links.iter().map(of_link).collect(),
-                ..self.clone()
-            });
+            add(Self { links: self.links.iter().map(of_link).collect(), ..self.clone() });
         }
         for friction in FRICTION_STRENGTHS {
-            add(Self {
-                friction,
-                ..self.clone()
-            });
+            add(Self { friction, ..self.clone() });
         }
         for gain in GAIN_STRENGTHS {
             add(Self { gain, ..self.clone() });
         }
-        add(Self {
-            lag: !self.lag,
-            ..self.clone()
-        });
+        add(Self { lag: !self.lag, ..self.clone() });
         list
     }
 
@@ -247,10 +207,7 @@ impl Strengths {
         if self.common() > 0.0 {
             for link in 0..self.links.len() {
                 for rho in OWN_STRENGTHS.into_iter().filter(|&rho| rho >= self.common()) {
-                    let mut next = Self {
-                        links: vec![0.0; self.links.len()],
-                        ..self.clone()
-                    };
+                    let mut next = Self { links: vec![0.0; self.links.len()], ..self.clone() };
                     next.links[link] = rho;
                     list.push(next);
                 }
@@ -274,10 +231,7 @@ impl Strengths {
 
     /// These strengths, with every link's at least `rho`.
     pub fn at_least(&self, rho: f64) -> Self {
-        Self {
-            links: self.links.iter().map(|own| own.max(rho)).collect(),
-            ..self.clone()
-        }
+        Self { links: self.links.iter().map(|own| own.max(rho)).collect(), ..self.clone() }
     }
 
     /// These strengths with less of one part, except for the constant torques, which no other effect replaces.
@@ -285,19 +239,10 @@ impl Strengths {
         let mut list = Vec::new();
         let largest = self.links.iter().copied().fold(0.0, f64::max);
         for rho in LINK_STRENGTHS.into_iter().filter(|&rho| rho < largest) {
-            list.push(Self {
-                links: self.links.iter().map(|&own| own.min(rho)).collect(),
-                ..self.clone()
-            });
+            list.push(Self { links: self.links.iter().map(|&own| own.min(rho)).collect(), ..self.clone() });
         }
-        for friction in FRICTION_STRENGTHS
-            .into_iter()
-            .filter(|&friction| friction < self.friction)
-        {
-            list.push(Self {
-                friction,
-                ..self.clone()
-            });
+        for friction in FRICTION_STRENGTHS.into_iter().filter(|&friction| friction < self.friction) {
+            list.push(Self { friction, ..self.clone() });
         }
         for gain in GAIN_STRENGTHS.into_iter().filter(|&gain| gain < self.gain) {
             list.push(Self { gain, ..self.clone() });
@@ -333,10 +278,7 @@ mod tests {
 
     #[test]
     fn the_common_strength_may_change_while_one_link_stays_apart() {
-        let strengths = Strengths {
-            links: vec![0.0, 1.0, 0.0],
-            ..Strengths::none(3)
-        };
+        let strengths = Strengths { links: vec![0.0, 1.0, 0.0], ..Strengths::none(3) };
         let neighbours = strengths.neighbours();
         let has = |links: [f64; 3]| neighbours.iter().any(|next| next.links == links);
         assert!(has([0.1, 1.0, 0.1]) && has([0.1; 3]));

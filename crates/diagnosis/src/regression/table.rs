@@ -78,11 +78,7 @@ impl Table {
         for chunk in &motions.chunks {
             let to = from + chunk.rows();
             let range = &mut rows[chunk.recording];
-            *range = if range.start == range.end {
-                from..to
-            } else {
-                range.start..to
-            };
+            *range = if range.start == range.end { from..to } else { range.start..to };
             from = to;
         }
         let held_out: Vec<bool> = motions.sources.iter().map(|source| source.held_out).collect();
@@ -92,11 +88,8 @@ impl Table {
                 let mut y = Vec::new();
                 let mut moves = Vec::new();
                 for (chunk, rigid) in motions.chunks.iter().zip(rigid) {
-                    let mut difference: Vec<f64> = chunk.tau[joint]
-                        .iter()
-                        .zip(&rigid.tau[joint])
-                        .map(|(a, b)| a - b)
-                        .collect();
+                    let mut difference: Vec<f64> =
+                        chunk.tau[joint].iter().zip(&rigid.tau[joint]).map(|(a, b)| a - b).collect();
                     if let Some(background) = rigid.background.get(joint) {
                         difference.iter_mut().zip(background).for_each(|(sum, x)| *sum += x);
                     }
@@ -112,9 +105,7 @@ impl Table {
                     // A joint that is only deflected a little does not count as moving.
                     let (low, high) = chunk.q[joint]
                         .iter()
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| {
-                            (low.min(q), high.max(q))
-                        });
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| (low.min(q), high.max(q)));
                     let yields = high - low < YIELDING * scales.range[joint];
                     let is_dead = scales.torque[joint] == 0.0;
                     moves.extend((0..chunk.rows()).map(|row| {
@@ -132,27 +123,13 @@ impl Table {
                         }
                     }));
                 }
-                let count = rows
-                    .iter()
-                    .map(|range| moves[range.clone()].iter().filter(|&&m| m).count())
-                    .collect();
+                let count = rows.iter().map(|range| moves[range.clone()].iter().filter(|&&m| m).count()).collect();
                 let stretches = Stretch::of(&rows, &held_out, &moves);
-                JointTable {
-                    y,
-                    x: Vec::new(),
-                    moving: moves,
-                    stretches,
-                    count,
-                }
+                JointTable { y, x: Vec::new(), moving: moves, stretches, count }
             })
             .collect();
-        let mut table = Self {
-            terms: Vec::new(),
-            place: vec![Vec::new(); motions.dof],
-            joints,
-            rows,
-            identity: Arc::default(),
-        };
+        let mut table =
+            Self { terms: Vec::new(), place: vec![Vec::new(); motions.dof], joints, rows, identity: Arc::default() };
         table.add(motions, rigid, scales, terms, None);
         table
     }
@@ -283,9 +260,7 @@ impl Table {
                 .zip(copies)
                 .map(|(&term, copy)| {
                     let along = motions.chunks.iter().zip(rigid).filter(|_| copy.is_none());
-                    along
-                        .filter_map(|(chunk, rigid)| link_side(term, chunk, rigid, scales))
-                        .collect()
+                    along.filter_map(|(chunk, rigid)| link_side(term, chunk, rigid, scales)).collect()
                 })
                 .collect();
             // The column of every term on every joint; `None` if it does not act there.
@@ -325,10 +300,8 @@ impl Table {
                 acts.then_some(column)
             };
             let dof = self.dof();
-            let mut columns: Vec<Option<Vec<f64>>> = (0..dof * terms.len())
-                .into_par_iter()
-                .map(|k| evaluate(k / terms.len(), k % terms.len()))
-                .collect();
+            let mut columns: Vec<Option<Vec<f64>>> =
+                (0..dof * terms.len()).into_par_iter().map(|k| evaluate(k / terms.len(), k % terms.len())).collect();
             if let Some(known) = &mut known {
                 for (joint, columns) in columns.chunks_mut(terms.len()).enumerate() {
                     for (column, copy) in columns.iter_mut().zip(copies) {

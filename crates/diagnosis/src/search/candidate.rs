@@ -18,10 +18,7 @@ pub struct Hypothesis {
 impl Hypothesis {
     /// A hypothesis that depends on no other joint.
     pub fn of(kind: &'static dyn EffectKind) -> Self {
-        Self {
-            kind: Kind::of(kind),
-            other: None,
-        }
+        Self { kind: Kind::of(kind), other: None }
     }
 
     /// Whether it is of this kind.
@@ -80,13 +77,7 @@ impl Candidate {
     /// A candidate with the usual evidence required.
     pub fn new(hypothesis: Hypothesis, joint: Option<usize>, columns: Vec<usize>, thresholds: &Thresholds) -> Self {
         let cost = hypothesis.spec().prior + thresholds.per_coefficient * columns.len() as f64;
-        Self {
-            hypothesis,
-            joint,
-            columns,
-            cost,
-            is_trial: false,
-        }
+        Self { hypothesis, joint, columns, cost, is_trial: false }
     }
 
     /// The terms of its columns.

@@ -21,10 +21,8 @@ pub fn in_place_of_delays(study: &mut Study, mut selected: Selection) -> Selecti
         if !hypothesis.is(&ActuationDelay) || !study.always_acts(delay) {
             continue;
         }
-        let trials: Vec<Selection> = CONNECTIONS
-            .iter()
-            .filter_map(|kind| sized(study, &selected, delay, *kind, joint))
-            .collect();
+        let trials: Vec<Selection> =
+            CONNECTIONS.iter().filter_map(|kind| sized(study, &selected, delay, *kind, joint)).collect();
         let best = trials.into_iter().min_by(|a, b| a.score.total_cmp(&b.score));
         if let Some(best) = best.filter(|best| best.score < selected.score - SWAP_GAIN) {
             study.note("explains more in its place", &selected, &best);

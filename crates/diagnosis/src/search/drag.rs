@@ -41,11 +41,7 @@ pub fn beside_viscous_friction(study: &mut Study, mut selected: Selection) -> Se
         let are_possible = [textbook, friction].iter().all(|&c| problem.is_possible(c, &next.fit));
         let is_as_good = next.score - study.candidates[friction].cost <= selected.score;
         if are_possible && is_as_good && next.score < alone.score {
-            study.note(
-                "viscous friction and an exponent of two explain as much",
-                &selected,
-                &next,
-            );
+            study.note("viscous friction and an exponent of two explain as much", &selected, &next);
             selected = next;
         }
     }

@@ -44,10 +44,7 @@ impl OwnLoad {
         if dof < 2 || recordings < 2 {
             return None;
         }
-        let wide = Strengths {
-            links: vec![1.0; dof],
-            ..Strengths::none(dof)
-        };
+        let wide = Strengths { links: vec![1.0; dof], ..Strengths::none(dof) };
         let background = prior.at(&wide)?;
         let mut found = Self::within(data, table, &background, None)?;
         for _ in 0..SPLITS {
@@ -69,17 +66,14 @@ impl OwnLoad {
             .rows
             .iter()
             .flat_map(|rows| {
-                let at = split.map_or(rows.end, |split| {
-                    rows.start + times[rows.clone()].partition_point(|time| *time < split)
-                });
+                let at = split
+                    .map_or(rows.end, |split| rows.start + times[rows.clone()].partition_point(|time| *time < split));
                 [rows.start..at, at..rows.end]
             })
             .filter(|rows| !rows.is_empty())
             .collect();
-        let parts: Vec<Part> = (0..dof)
-            .into_par_iter()
-            .flat_map_iter(|joint| Part::of_joint(data, table, joint, &stretches))
-            .collect();
+        let parts: Vec<Part> =
+            (0..dof).into_par_iter().flat_map_iter(|joint| Part::of_joint(data, table, joint, &stretches)).collect();
         let mut variances = Variances::first(data);
         for _ in 0..REWEIGHTINGS {
             let same = LoadEquations::new(&parts, &variances, background, (dof, stretches.len()))?;
@@ -106,11 +100,8 @@ impl OwnLoad {
         let was_put_down = motions.one_clock && load.changed_once(motions) && !load.was_picked_up(motions);
         // The smaller group is the one that differs; of two halves, that with more mass, and of two sides of a time, that before it.
         let (size, all) = (group.len(), stretches.len());
-        let is_of_the_others = if was_put_down {
-            load.load[0] < 0.0
-        } else {
-            2 * size > all || 2 * size == all && load.load[0] < 0.0
-        };
+        let is_of_the_others =
+            if was_put_down { load.load[0] < 0.0 } else { 2 * size > all || 2 * size == all && load.load[0] < 0.0 };
         let mut sign = 1.0;
         if let Some(split) = split {
             let is_before = |stretch: &usize| times[stretches[*stretch].start] < split;
@@ -148,19 +139,13 @@ impl OwnLoad {
     /// The same difference as a load of positive mass, which the other recordings have if this one has a negative mass. The links of a
     /// URDF are nearer to an arm without a load.
     pub fn of_more_mass(self, recordings: usize) -> Self {
-        if self.load[0] > 0.0 {
-            self
-        } else {
-            self.of_the_others(recordings)
-        }
+        if self.load[0] > 0.0 { self } else { self.of_the_others(recordings) }
     }
 
     /// The same difference as a load of the other recordings.
     fn of_the_others(self, recordings: usize) -> Self {
         Self {
-            recordings: (0..recordings)
-                .filter(|recording| !self.recordings.contains(recording))
-                .collect(),
+            recordings: (0..recordings).filter(|recording| !self.recordings.contains(recording)).collect(),
             until: None,
             load: self.load.map(|parameter| -parameter),
             ..self
@@ -174,10 +159,7 @@ impl OwnLoad {
 
     /// Whether the first recordings have it and the last ones do not, or the other way round.
     fn changed_once(&self, motions: &Motions) -> bool {
-        let has: Vec<bool> = in_order(motions)
-            .iter()
-            .map(|recording| self.recordings.contains(recording))
-            .collect();
+        let has: Vec<bool> = in_order(motions).iter().map(|recording| self.recordings.contains(recording)).collect();
         has.windows(2).filter(|pair| pair[0] != pair[1]).count() == 1
     }
 
@@ -189,13 +171,7 @@ impl OwnLoad {
     /// Standard deviations for the ten inertial parameters of such a load in a background.
     pub fn prior(&self) -> [f64; PER_LINK] {
         let reach = |k: usize| self.load[k].abs() + 2.0 * self.deviations[k];
-        std::array::from_fn(|k| {
-            if k < LOAD {
-                reach(k)
-            } else {
-                reach(0) * LOAD_SIZE * LOAD_SIZE
-            }
-        })
+        std::array::from_fn(|k| if k < LOAD { reach(k) } else { reach(0) * LOAD_SIZE * LOAD_SIZE })
     }
 }
 

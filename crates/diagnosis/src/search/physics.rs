@@ -78,12 +78,7 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
 
 /// Whether the effect of `candidate` can exist at the coefficients of `fit`.
 fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    candidate.hypothesis.kind.get().is_possible(&InFit {
-        candidate,
-        table,
-        fit,
-        arm,
-    })
+    candidate.hypothesis.kind.get().is_possible(&InFit { candidate, table, fit, arm })
 }
 
 /// Whether no effect of `candidate` has a coefficient of ±`size` on `column`, although a smaller one is possible: one a thousandth
@@ -131,12 +126,7 @@ fn torque_share(candidate: &Candidate, table: &Table, fit: &Fit, joint: usize) -
     let torque = table.torque(joint, &candidate.columns, &fit.values(&candidate.columns));
     let this = &table.joints[joint];
     let power = |signal: &[f64]| -> f64 {
-        signal
-            .iter()
-            .zip(&this.moving)
-            .filter(|(_, moving)| **moving)
-            .map(|(v, _)| v * v)
-            .sum()
+        signal.iter().zip(&this.moving).filter(|(_, moving)| **moving).map(|(v, _)| v * v).sum()
     };
     (power(&torque) / power(&this.y).max(1e-300)).sqrt()
 }
@@ -156,23 +146,14 @@ mod tests {
             (2.2, 0.0, false),
             (2.2, 0.3, true),
         ] {
-            assert_eq!(
-                is_near_one(coefficient, links),
-                near,
-                "{coefficient}, links wrong by {links}"
-            );
+            assert_eq!(is_near_one(coefficient, links), near, "{coefficient}, links wrong by {links}");
         }
     }
 
     #[test]
     fn a_size_far_beyond_its_limit_is_too_large_and_an_impossible_effect_is_not() {
         let below = |limit: f64| move |size: f64| size < limit;
-        for (size, limit, too_large) in [
-            (0.1, 0.2, false),
-            (0.3, 0.2, true),
-            (4e14, 0.2, true),
-            (0.3, 0.0, false),
-        ] {
+        for (size, limit, too_large) in [(0.1, 0.2, false), (0.3, 0.2, true), (4e14, 0.2, true), (0.3, 0.0, false)] {
             assert_eq!(is_too_large(size, below(limit)), too_large, "{size} of {limit}");
         }
     }

@@ -18,10 +18,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     let problem = study.problem(&products);
     let mut selected = problem.reweighted(problem.choose(baseline, &products.first_weights()));
     for round in 1..=MOST_SUGGESTIONS {
-        progress(Step::new(
-            0.12 + 0.08 * round as f64,
-            &format!("searching effects, round {round}"),
-        ));
+        progress(Step::new(0.12 + 0.08 * round as f64, &format!("searching effects, round {round}")));
         let before = selected.set.clone();
         // Unmodelled forms must not hide effects that the residual suggests. Neither must earlier suggestions, which were
         // made with a worse fit: the period of a ripple, a contact or an onset may have taken the place of another one. What changed
@@ -52,10 +49,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         }
     }
     for round in 1..=MOST_REFINEMENTS {
-        progress(Step::new(
-            0.32 + 0.1 * round as f64,
-            &format!("refining sizes, round {round}"),
-        ));
+        progress(Step::new(0.32 + 0.1 * round as f64, &format!("refining sizes, round {round}")));
         selected = refine(study, selected, round > 1);
         let formed_anew = study.relinearise(&selected.fit, &selected.set);
         let again = formed_anew.is_some();

@@ -61,10 +61,7 @@ pub struct Problem<'a> {
 impl Problem<'_> {
     /// The columns of a set, without repetition.
     pub fn columns(&self, set: &[usize]) -> Vec<usize> {
-        let mut columns: Vec<usize> = set
-            .iter()
-            .flat_map(|&c| self.candidates[c].columns.iter().copied())
-            .collect();
+        let mut columns: Vec<usize> = set.iter().flat_map(|&c| self.candidates[c].columns.iter().copied()).collect();
         columns.sort_unstable();
         columns.dedup();
         columns
@@ -74,10 +71,7 @@ impl Problem<'_> {
     fn cost(&self, set: &[usize]) -> f64 {
         let own: f64 = set.iter().map(|&c| self.candidates[c].cost).sum();
         let counted: usize = set.iter().map(|&c| self.candidates[c].columns.len()).sum();
-        let drives = set
-            .iter()
-            .filter(|&&c| self.candidates[c].hypothesis.is_drive_inertia())
-            .count();
+        let drives = set.iter().filter(|&&c| self.candidates[c].hypothesis.is_drive_inertia()).count();
         own - self.thresholds.per_coefficient * (counted - self.columns(set).len()) as f64
             - KNOWN_DRIVE * drives.saturating_sub(TELLING_DRIVES) as f64
     }
@@ -128,10 +122,7 @@ impl Problem<'_> {
                 other.joint == self.candidates[candidate].joint && other.hypothesis.spec().is_friction
             };
             for friction in (0..self.candidates.len()).filter(is_friction) {
-                if !set
-                    .iter()
-                    .any(|&other| other == friction || self.exclude(friction, other))
-                {
+                if !set.iter().any(|&other| other == friction || self.exclude(friction, other)) {
                     set.push(friction);
                 }
             }
@@ -148,9 +139,7 @@ impl Problem<'_> {
     fn may_go(&self, set: &[usize], member: usize) -> bool {
         let this = &self.candidates[member];
         !this.hypothesis.spec().is_friction
-            || !set
-                .iter()
-                .any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
+            || !set.iter().any(|&c| self.is_unmodelled(c) && self.candidates[c].joint == this.joint)
     }
 
     /// The residual sums of squares of `fit` on the recordings of `held`, which decide on `candidate`. For a form of friction, dry and
@@ -261,10 +250,6 @@ impl Problem<'_> {
         let mut with = set;
         with.push(plain);
         let simpler = self.choose(with, &selected.fit.weights);
-        if simpler.score < bare.score && self.is_possible(plain, &simpler.fit) {
-            simpler
-        } else {
-            bare
-        }
+        if simpler.score < bare.score && self.is_possible(plain, &simpler.fit) { simpler } else { bare }
     }
 }

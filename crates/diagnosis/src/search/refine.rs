@@ -11,17 +11,8 @@ use crate::thresholds::{FINER_STEPS, OTHER_FORM_SIZES, REFINED_ONSET, REFINED_SI
 
 /// The sizes of terms that have intervals.
 pub fn sizes(terms: &[Term]) -> Vec<Size> {
-    let all = [
-        Size::Main,
-        Size::Exponent,
-        Size::Damping,
-        Size::Stop,
-        Size::Periods,
-        Size::Duration,
-    ];
-    all.into_iter()
-        .filter(|&size| varied(terms, size, 1.01) != terms)
-        .collect()
+    let all = [Size::Main, Size::Exponent, Size::Damping, Size::Stop, Size::Periods, Size::Duration];
+    all.into_iter().filter(|&size| varied(terms, size, 1.01) != terms).collect()
 }
 
 /// `terms` with one size times `factor`.
@@ -81,16 +72,11 @@ fn softened(terms: &[Term], mass: f64) -> Vec<Vec<Term>> {
 /// Variants of a candidate's terms in a round of refinement; `mass` is the inertia of its link (kg m² or kg), `changed_at` the
 /// time of a change between the recordings (s).
 fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) -> Vec<Vec<Term>> {
-    let mut list: Vec<Vec<Term>> = REFINED_SIZES[round]
-        .iter()
-        .map(|&factor| resized(terms, factor))
-        .collect();
+    let mut list: Vec<Vec<Term>> = REFINED_SIZES[round].iter().map(|&factor| resized(terms, factor)).collect();
     list.retain(|terms| !terms.is_empty());
     // The stiffness and the damping of a spring are coupled, as are a gap and its compliant ends: all combinations of sizes
     // are tried.
-    let second = [Size::Damping, Size::Stop]
-        .into_iter()
-        .find(|second| sizes(terms).contains(second));
+    let second = [Size::Damping, Size::Stop].into_iter().find(|second| sizes(terms).contains(second));
     if let Some(second) = second {
         let steps = REFINED_STEPS.map(|step| (SECOND_SIZE_STEP * step * FINER_STEPS.powi(round as i32)).exp());
         let stiffer = list.clone();
@@ -100,11 +86,7 @@ fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) ->
     }
     let sized: Vec<Vec<Term>> = list.iter().cloned().chain([terms.to_vec()]).collect();
     list.extend(sized.iter().flat_map(|terms| softened(terms, mass)));
-    list.extend(if round < FORMS {
-        forms(terms, changed_at)
-    } else {
-        Vec::new()
-    });
+    list.extend(if round < FORMS { forms(terms, changed_at) } else { Vec::new() });
     // A finer step of a ripple's period, relative to one period over the range.
     let nudges = REFINED_STEPS.map(|step| step * FINER_STEPS.powi(round as i32));
     for kind in 0..NUDGES {
@@ -127,11 +109,7 @@ fn variants(terms: &[Term], round: usize, mass: f64, changed_at: Option<f64>) ->
 fn first_sizes(study: &Study, member: usize) -> Vec<Vec<Term>> {
     let this = &study.candidates[member];
     let own = study.terms(member);
-    if sizes(&own).is_empty()
-        || own
-            .iter()
-            .any(|term| found_onset(term, study.data.motions.changed_at).is_some())
-    {
+    if sizes(&own).is_empty() || own.iter().any(|term| found_onset(term, study.data.motions.changed_at).is_some()) {
         return Vec::new();
     }
     let is_like = |c: &usize| {
@@ -193,20 +171,11 @@ fn resize_once(
 ) -> Selection {
     let mut options: Vec<(usize, Vec<Vec<Term>>)> = Vec::new();
     let mut missing = Vec::new();
-    for &member in selected
-        .set
-        .iter()
-        .filter(|&&member| included(&study.candidates[member]))
-    {
+    for &member in selected.set.iter().filter(|&&member| included(&study.candidates[member])) {
         let candidate = &study.candidates[member];
-        let terms: Vec<Term> = candidate
-            .columns
-            .iter()
-            .map(|&column| study.table.terms[column])
-            .collect();
-        let mass = candidate.joint.map_or(0.0, |joint| {
-            mean(study.data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)))
-        });
+        let terms: Vec<Term> = candidate.columns.iter().map(|&column| study.table.terms[column]).collect();
+        let mass =
+            candidate.joint.map_or(0.0, |joint| mean(study.data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint))));
         let mut list = variants(&terms, round, mass, study.data.motions.changed_at);
         if round == 0 {
             list.extend(first_sizes(study, member));
@@ -229,9 +198,7 @@ fn resize_once(
             let known = study.candidates.len();
             let add = |terms| study.add(hypothesis, joint, terms);
             let indices = list.into_iter().map(add).collect();
-            study.candidates[known..]
-                .iter_mut()
-                .for_each(|trial| trial.is_trial = true);
+            study.candidates[known..].iter_mut().for_each(|trial| trial.is_trial = true);
             (member, indices)
         })
         .collect();
@@ -244,11 +211,7 @@ fn resize_once(
             .into_par_iter()
             .filter(|&index| !is_another(index))
             .filter_map(|index| {
-                let set = selected
-                    .set
-                    .iter()
-                    .map(|&m| if m == member { index } else { m })
-                    .collect();
+                let set = selected.set.iter().map(|&m| if m == member { index } else { m }).collect();
                 let next = problem.choose(set, &selected.fit.weights);
                 problem.is_possible(index, &next.fit).then_some(next)
             })

@@ -23,9 +23,7 @@ const MOST_SAMPLES: usize = 6000;
 
 /// The residual of every joint's y on all rows.
 pub fn residuals(table: &Table, fit: &Fit) -> Vec<Vec<f64>> {
-    (0..table.dof())
-        .map(|joint| table.residual(joint, &fit.columns, &fit.coefficients))
-        .collect()
+    (0..table.dof()).map(|joint| table.residual(joint, &fit.columns, &fit.coefficients)).collect()
 }
 
 /// The windows (s) in which a force on the tool explains most of the residual, best first; `force` are the columns of a force
@@ -319,11 +317,7 @@ pub fn contact_gain(data: &Data, table: &Table, without: &Fit, columns: &[usize]
     let Some((_, [before, after])) = fit.solved() else {
         return 0.0;
     };
-    if before > 0.0 {
-        1.0 - (after / before).sqrt()
-    } else {
-        0.0
-    }
+    if before > 0.0 { 1.0 - (after / before).sqrt() } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -35,22 +35,11 @@ mod tests {
 
     #[test]
     fn what_may_be_named() {
-        let scope = Scope {
-            is_open: vec![true, false],
-            names: vec![(Hypothesis::of(&TorqueScale), Some(1))],
-        };
+        let scope = Scope { is_open: vec![true, false], names: vec![(Hypothesis::of(&TorqueScale), Some(1))] };
         let may_be = |kind: &'static dyn EffectKind, joint: Option<usize>| {
-            scope.contains(&Candidate::new(
-                Hypothesis::of(kind),
-                joint,
-                Vec::new(),
-                &Thresholds::default(),
-            ))
+            scope.contains(&Candidate::new(Hypothesis::of(kind), joint, Vec::new(), &Thresholds::default()))
         };
-        assert!(
-            may_be(&Backlash, Some(0)) && may_be(&TorqueScale, Some(0)),
-            "on the open joint"
-        );
+        assert!(may_be(&Backlash, Some(0)) && may_be(&TorqueScale, Some(0)), "on the open joint");
         assert!(!may_be(&Backlash, Some(1)), "on the other joint");
         assert!(may_be(&TorqueScale, Some(1)), "an earlier name");
         assert!(may_be(&CoulombFriction, Some(1)), "a baseline effect");

@@ -89,9 +89,7 @@ pub struct Study {
 /// `terms` of a hypothesis, each with `change`: a begin or an end. The Coulomb level that a friction generalises is there before and
 /// after the change, and is not counted a second time.
 fn changing(hypothesis: Hypothesis, terms: &[Term], change: impl Fn(&Term) -> Term) -> Vec<Term> {
-    let generalises_friction = hypothesis
-        .generalises()
-        .is_some_and(|simpler| simpler.spec().is_friction);
+    let generalises_friction = hypothesis.generalises().is_some_and(|simpler| simpler.spec().is_friction);
     let stays = |term: &Term| generalises_friction && term.is(&SIGN);
     let changing = |term: &Term| if stays(term) { *term } else { change(term) };
     terms.iter().map(changing).collect()
@@ -154,14 +152,7 @@ impl Study {
 
     fn with(data: Data, options: &Options, own_load: Option<&[f64; PER_LINK]>) -> Self {
         let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
-        let Data {
-            arm,
-            motions,
-            rigid,
-            scales,
-            fitted,
-            ..
-        } = &data;
+        let Data { arm, motions, rigid, scales, fitted, .. } = &data;
         let times: Vec<(f64, f64)> = spans(motions)
             .into_iter()
             .zip(fitted)
@@ -170,11 +161,7 @@ impl Study {
             .collect();
         let first = times.first().map_or(0.0, |span| span.0);
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
-        let placeholders = if stated.links != Some(0.0) {
-            arm.placeholders(LEAST_BODY_RADIUS)
-        } else {
-            Vec::new()
-        };
+        let placeholders = if stated.links != Some(0.0) { arm.placeholders(LEAST_BODY_RADIUS) } else { Vec::new() };
         let mut radii = vec![LEAST_BODY_RADIUS; arm.dof()];
         let mut least = vec![0.0; arm.dof()];
         for (link, length) in placeholders {
@@ -211,9 +198,8 @@ impl Study {
         if let Some(at) = motions.changed_at {
             // Every named effect may have begun after the recordings from before. One that has only one sign may also have ended:
             // the other effects in addition to those from before are of the opposite sign then.
-            let named = list
-                .iter()
-                .filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.spec().is_simulated);
+            let named =
+                list.iter().filter(|(hypothesis, ..)| hypothesis.name().is_some() && !hypothesis.spec().is_simulated);
             let begun = |(hypothesis, joint, terms): &(Hypothesis, _, Vec<Term>)| {
                 (*hypothesis, *joint, changing(*hypothesis, terms, |term| term.since(at)))
             };
@@ -250,10 +236,7 @@ impl Study {
             simulated_along: vec![None; motions.dof],
             carries: false,
             moving: Moving::Steadily,
-            strengths: Strengths {
-                least,
-                ..stated.first(arm.dof())
-            },
+            strengths: Strengths { least, ..stated.first(arm.dof()) },
             preferred: None,
             stated,
             thresholds,
@@ -283,9 +266,7 @@ impl Study {
 
     /// Inner products of a table over the training recordings, or over the held-out ones, without background.
     fn bare_products(&self, table: &Table, held_out: bool) -> Products {
-        let Data {
-            seconds, floor, fitted, ..
-        } = &self.data;
+        let Data { seconds, floor, fitted, .. } = &self.data;
         let selected = |recording: usize| fitted[recording] != held_out;
         Products::new(table, selected, seconds, &self.data.motions.tempo, floor)
     }
@@ -309,31 +290,20 @@ impl Study {
     /// Evaluates more terms.
     pub fn extend(&mut self, terms: Vec<Term>) {
         if !terms.is_empty() {
-            self.table
-                .add(&self.data.motions, &self.data.rigid, &self.data.scales, terms, None);
+            self.table.add(&self.data.motions, &self.data.rigid, &self.data.scales, terms, None);
         }
     }
 
     /// A new candidate with new columns; its index.
     pub fn add(&mut self, hypothesis: Hypothesis, joint: Option<usize>, terms: Vec<Term>) -> usize {
-        let columns: Vec<usize> = terms
-            .iter()
-            .filter_map(|term| self.table.terms.iter().position(|known| known == term))
-            .collect();
+        let columns: Vec<usize> =
+            terms.iter().filter_map(|term| self.table.terms.iter().position(|known| known == term)).collect();
         let columns = if columns.len() == terms.len() {
             columns
         } else {
-            let missing: Vec<Term> = terms
-                .iter()
-                .copied()
-                .filter(|term| !self.table.terms.contains(term))
-                .collect();
-            self.table
-                .add(&self.data.motions, &self.data.rigid, &self.data.scales, missing, None);
-            terms
-                .iter()
-                .filter_map(|term| self.table.terms.iter().position(|known| known == term))
-                .collect()
+            let missing: Vec<Term> = terms.iter().copied().filter(|term| !self.table.terms.contains(term)).collect();
+            self.table.add(&self.data.motions, &self.data.rigid, &self.data.scales, missing, None);
+            terms.iter().filter_map(|term| self.table.terms.iter().position(|known| known == term)).collect()
         };
         let same = |candidate: &Candidate| {
             candidate.hypothesis == hypothesis && candidate.joint == joint && candidate.columns == columns

@@ -54,9 +54,7 @@ impl Study {
         let until = self.own_load.as_ref().and_then(|load| load.until);
         let is_of_it = |term: &Term| {
             let onset = term.onset();
-            onset
-                .zip(until)
-                .is_some_and(|(onset, until)| (onset - until).abs() < OF_THE_SAME_LOAD)
+            onset.zip(until).is_some_and(|(onset, until)| (onset - until).abs() < OF_THE_SAME_LOAD)
         };
         new.retain(|(hypothesis, _, terms)| !(hypothesis.is(&Payload) && terms.iter().any(is_of_it)));
         for (from, to) in windows {
@@ -77,8 +75,7 @@ impl Study {
             .flat_map(|(_, _, terms)| terms.iter().copied())
             .filter(|term| !self.table.terms.contains(term))
             .collect();
-        self.table
-            .add(&self.data.motions, &self.data.rigid, &self.data.scales, missing, None);
+        self.table.add(&self.data.motions, &self.data.rigid, &self.data.scales, missing, None);
         for (hypothesis, joint, terms) in new {
             self.add(hypothesis, joint, terms);
         }
@@ -89,8 +86,6 @@ impl Study {
         let Some(window) = terms.first().and_then(contact_window) else {
             return true;
         };
-        self.data
-            .contact_share(&[window])
-            .is_none_or(|(_, share)| share <= MOST_OF_A_RECORDING)
+        self.data.contact_share(&[window]).is_none_or(|(_, share)| share <= MOST_OF_A_RECORDING)
     }
 }

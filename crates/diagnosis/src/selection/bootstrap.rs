@@ -48,12 +48,7 @@ impl Resampled {
     /// The estimate and the interval for this background alone.
     fn own_interval(&self, systematic: f64, f: &impl Fn(&[f64]) -> f64) -> (f64, [f64; 2]) {
         let value = f(&self.estimate);
-        let mut draws: Vec<f64> = self
-            .draws
-            .iter()
-            .map(|draw| f(draw))
-            .filter(|v| v.is_finite())
-            .collect();
+        let mut draws: Vec<f64> = self.draws.iter().map(|draw| f(draw)).filter(|v| v.is_finite()).collect();
         if draws.len() < 3 {
             return (value, [f64::NEG_INFINITY, f64::INFINITY]);
         }
@@ -67,12 +62,7 @@ impl Resampled {
     /// These resamplings with intervals for a background whose strength is the same in all directions. They decide whether an
     /// effect differs from zero, and are not reported.
     pub fn evenly(&self) -> Self {
-        Self {
-            draws: self.even.clone(),
-            inflation: INFLATION,
-            other: None,
-            ..self.clone()
-        }
+        Self { draws: self.even.clone(), inflation: INFLATION, other: None, ..self.clone() }
     }
 
     /// If the held-out recordings reduced the background, or only some links differ from the URDF and a background in which all links
@@ -81,9 +71,7 @@ impl Resampled {
     pub fn allow_for_other_background(&mut self, study: &mut Study, selected: &Selection) {
         let preferred = study.preferred.clone().map(|strengths| {
             let products = study.products_at(&strengths);
-            let next = study
-                .problem(&products)
-                .choose(selected.set.clone(), &selected.fit.weights);
+            let next = study.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
             (strengths, next)
         });
         let Some((strengths, next)) = preferred.or_else(|| study.with_all_links(selected)) else {
@@ -138,20 +126,14 @@ pub fn resample(study: &mut Study, selected: &Selection) -> Resampled {
     study.extend(missing);
     let columns = selected.fit.columns.clone();
     debug_assert!(
-        study
-            .background()
-            .is_none_or(|background| columns.starts_with(&background.columns)),
+        study.background().is_none_or(|background| columns.starts_with(&background.columns)),
         "the fit is beside another background"
     );
     let scaled = scaled(study, selected);
     let p = columns.len() + all.len();
     let systems = systems(study, selected, &columns, &all);
     let prior = PriorDraws::new(study, columns.len(), all.len());
-    let total = systems
-        .iter()
-        .fold((prior.precision.clone(), prior.pull.clone()), |(a, b), (c, d)| {
-            (a + c, b + d)
-        });
+    let total = systems.iter().fold((prior.precision.clone(), prior.pull.clone()), |(a, b), (c, d)| (a + c, b + d));
     let estimate = in_true_torque(solve(&total.0, &total.1), &scaled);
     let (draws, even): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..DRAWS)
         .into_par_iter()
@@ -178,11 +160,7 @@ pub fn resample(study: &mut Study, selected: &Selection) -> Resampled {
         even,
         other: None,
         sizes: all,
-        inflation: if study.strengths.is_of_joints() {
-            INFLATION_IN_DRIVES
-        } else {
-            INFLATION
-        },
+        inflation: if study.strengths.is_of_joints() { INFLATION_IN_DRIVES } else { INFLATION },
     }
 }
 
@@ -260,12 +238,7 @@ impl PriorDraws {
             precision[(size, size)] = LARGEST_CORRECTION.powi(-2);
         }
         let lower = own.clone().cholesky().map_or(own, nalgebra::Cholesky::unpack);
-        Self {
-            precision,
-            pull,
-            lower,
-            sizes,
-        }
+        Self { precision, pull, lower, sizes }
     }
 
     /// K ξ for the right-hand side of `p` columns, ξ ~ N(0, K⁻¹).
@@ -347,11 +320,8 @@ fn systems(
             for (joint, list) in by_joint.iter().enumerate() {
                 let this = &table.joints[joint];
                 let weight = weights[joint];
-                let acting: Vec<(usize, &Vec<f64>)> = list
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(k, x)| x.as_ref().map(|x| (k, x)))
-                    .collect();
+                let acting: Vec<(usize, &Vec<f64>)> =
+                    list.iter().enumerate().filter_map(|(k, x)| x.as_ref().map(|x| (k, x))).collect();
                 for row in rows.clone().filter(|&row| this.moving[row]) {
                     for (at, &(i, x)) in acting.iter().enumerate() {
                         let wx = weight * x[row];
@@ -381,9 +351,7 @@ fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
 /// Least squares with two right-hand sides, as in [`solve`].
 fn solve_both(a: &DMatrix<f64>, b: &DVector<f64>, c: &DVector<f64>) -> [DVector<f64>; 2] {
     let p = b.len();
-    let scale: Vec<f64> = (0..p)
-        .map(|i| if a[(i, i)] > 0.0 { a[(i, i)].sqrt() } else { 1.0 })
-        .collect();
+    let scale: Vec<f64> = (0..p).map(|i| if a[(i, i)] > 0.0 { a[(i, i)].sqrt() } else { 1.0 }).collect();
     let mut matrix = DMatrix::from_fn(p, p, |i, k| a[(i, k)] / (scale[i] * scale[k]));
     for i in 0..p {
         matrix[(i, i)] += 1e-8;

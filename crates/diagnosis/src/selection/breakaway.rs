@@ -14,13 +14,7 @@ use crate::thresholds::{LEAST_AT_REVERSALS, SLOWEST_AT_REVERSALS};
 pub fn at_reversals(study: &mut Study, judged: &mut Judged) {
     let coulomb = Hypothesis::of(&CoulombFriction);
     let is_plain = |study: &Study, c: usize| study.candidates[c].hypothesis == coulomb && study.always_acts(c);
-    let before: Vec<usize> = judged
-        .named
-        .set
-        .iter()
-        .copied()
-        .filter(|&c| is_plain(study, c))
-        .collect();
+    let before: Vec<usize> = judged.named.set.iter().copied().filter(|&c| is_plain(study, c)).collect();
     for friction in before {
         let Some(joint) = study.candidates[friction].joint else {
             continue;
@@ -39,10 +33,8 @@ pub fn at_reversals(study: &mut Study, judged: &mut Judged) {
         // A fall near standstill is an error of the model at reversals.
         let slowest = SLOWEST_AT_REVERSALS * study.data.scales.rest[joint];
         let is_slow = |c: usize| stribeck_velocity(&study.terms(c)).is_some_and(|velocity| velocity >= slowest);
-        let is_possible = best
-            .set
-            .iter()
-            .any(|&c| is_form(&study.candidates[c]) && is_slow(c) && problem.is_possible(c, &best.fit));
+        let is_possible =
+            best.set.iter().any(|&c| is_form(&study.candidates[c]) && is_slow(c) && problem.is_possible(c, &best.fit));
         if is_possible && best.score < judged.named.score - LEAST_AT_REVERSALS {
             study.note("the rows near reversals require it", &judged.named, &best);
             judged.members = judge::describe(&problem, &best);

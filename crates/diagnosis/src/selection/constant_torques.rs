@@ -29,12 +29,7 @@ pub fn names(study: &Study, candidate: usize) -> Option<usize> {
 /// `selected` without those named constants that are better explained by small constants of all joints.
 pub fn leave_to_background(study: &mut Study, mut selected: Selection) -> Selection {
     loop {
-        let named: Vec<usize> = selected
-            .set
-            .iter()
-            .copied()
-            .filter(|&c| names(study, c).is_some())
-            .collect();
+        let named: Vec<usize> = selected.set.iter().copied().filter(|&c| names(study, c).is_some()).collect();
         let mut best: Option<(Strengths, Selection)> = None;
         for &member in &named {
             for offset in OFFSET_STRENGTHS.into_iter().filter(|&offset| offset > 0.0) {

@@ -30,11 +30,7 @@ impl OnOneJoint {
         let pair = [candidate.joint?, candidate.hypothesis.other?];
         let fit = &selected.fit;
         let columns: Vec<usize> = fit.selected().to_vec();
-        let others: Vec<usize> = columns
-            .iter()
-            .copied()
-            .filter(|column| !candidate.columns.contains(column))
-            .collect();
+        let others: Vec<usize> = columns.iter().copied().filter(|column| !candidate.columns.contains(column)).collect();
         let both = study.fit_with(&columns, Vec::new(), &fit.weights).loss;
         let alone = |[joint, other]: [usize; 2]| {
             let terms = candidate.columns.iter().map(|&column| Term {

@@ -72,9 +72,7 @@ impl Constants {
         let constant = study.candidates[member].columns.last().copied()?;
         let mut columns = selected.fit.selected().to_vec();
         columns.retain(|&column| column != constant);
-        let common = columns
-            .iter()
-            .position(|&column| terms[column] == Term::on(&SIGN, joint))?;
+        let common = columns.iter().position(|&column| terms[column] == Term::on(&SIGN, joint))?;
         let own_constant = |&recording: &usize| Term::on(&OWN_CONSTANT, joint).of(recording);
         let more = recordings.iter().map(own_constant).collect();
         let fit = study.fit_with(&columns, more, &selected.fit.weights);
@@ -95,10 +93,7 @@ impl Constants {
 
     /// Whether the constants and the levels together are friction in both directions of all recordings.
     fn oppose_the_motion(&self) -> bool {
-        self.values
-            .iter()
-            .zip(&self.levels)
-            .all(|(constant, level)| constant.abs() < *level)
+        self.values.iter().zip(&self.levels).all(|(constant, level)| constant.abs() < *level)
     }
 
     /// The evidence for friction that depends on the direction, against an offset of the sensor (nats; negative: for the offset).
@@ -116,21 +111,14 @@ impl Constants {
         let weighted = &self.information * shape;
         let square = shape.dot(&weighted);
         let all = self.values.dot(&(&self.information * &self.values));
-        if square > 0.0 {
-            (all - self.values.dot(&weighted).powi(2) / square).max(0.0)
-        } else {
-            all
-        }
+        if square > 0.0 { (all - self.values.dot(&weighted).powi(2) / square).max(0.0) } else { all }
     }
 }
 
 /// Replaces the name of `member` by asymmetric friction, or by an offset; returns whether that name is allowed.
 fn rename(study: &mut Study, judged: &mut Judged, member: usize, joint: usize, is_friction: bool) -> bool {
     let [friction, offset, dry] = [
-        (
-            Hypothesis::of(&FrictionAsymmetry),
-            vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)],
-        ),
+        (Hypothesis::of(&FrictionAsymmetry), vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)]),
         (Hypothesis::of(&TorqueOffset), vec![Term::on(&ONE, joint)]),
         (Hypothesis::of(&CoulombFriction), vec![Term::on(&SIGN, joint)]),
     ]

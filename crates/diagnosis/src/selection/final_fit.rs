@@ -94,11 +94,7 @@ fn drop_name(study: &mut Study, judged: &mut Judged, candidate: usize, rule: &'s
 
 fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
     let next = problem.choose(set, &judged.named.fit.weights);
-    study.note(
-        "its joint is still predicted worse than by a constant",
-        &judged.named,
-        &next,
-    );
+    study.note("its joint is still predicted worse than by a constant", &judged.named, &next);
     judged.named = next;
     judged.members = judge::describe(problem, &judged.named);
 }
@@ -138,9 +134,7 @@ fn relinearise_once(study: &mut Study, judged: &mut Judged, as_given: bool) {
     let named = judged.named.set.len();
     torque_constants::keep_named_ones(study, &kept[..named]);
     let products = study.training_products();
-    let refitted = study
-        .problem(&products)
-        .choose(kept[..named].to_vec(), &judged.named.fit.weights);
+    let refitted = study.problem(&products).choose(kept[..named].to_vec(), &judged.named.fit.weights);
     judged.named = if as_given {
         refitted
     } else {
@@ -172,12 +166,7 @@ fn make_possible(study: &mut Study, judged: &mut Judged) {
 fn prove(study: &mut Study, judged: &mut Judged) {
     let Some(held) = study.held_products() else { return };
     while let Some(useless) = useless(&study.problem(&study.training_products()), &held, judged) {
-        drop_name(
-            study,
-            judged,
-            useless,
-            "does not improve the prediction of held-out recordings",
-        );
+        drop_name(study, judged, useless, "does not improve the prediction of held-out recordings");
     }
 }
 
@@ -192,9 +181,7 @@ fn give_up(study: &mut Study, judged: &mut Judged) {
         let candidate = &study.candidates[candidate];
         let explains =
             |joint: usize| candidate.hypothesis.spec().is_friction && fits[joint].train_nrmse_augmented < PARTLY;
-        !candidate
-            .joint
-            .is_some_and(|joint| is_hopeless(joint) && !explains(joint))
+        !candidate.joint.is_some_and(|joint| is_hopeless(joint) && !explains(joint))
     };
     let set: Vec<usize> = judged.named.set.iter().copied().filter(stays).collect();
     if set.len() < judged.named.set.len() {
@@ -235,11 +222,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
         let is_wrong = study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders();
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
-        let size = judged
-            .named
-            .fit
-            .coefficient(study.candidates[member.candidate].columns[0])
-            .abs();
+        let size = judged.named.fit.coefficient(study.candidates[member.candidate].columns[0]).abs();
         let is_too_far = hypothesis.spec().most_beside_inertials.is_some_and(|most| size > most);
         let is_weak = is_too_far || evidence(study) < least;
         is_weak.then_some(("wrong inertials explain nearly as much in its place", true))
@@ -272,12 +255,7 @@ fn guard(study: &mut Study, judged: &mut Judged) {
             };
             let without = judged.members.iter().filter(acts).map(|member| {
                 let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-                (
-                    fit_of(study, &next, joint)
-                        .held_out_nrmse_augmented
-                        .unwrap_or(f64::INFINITY),
-                    next,
-                )
+                (fit_of(study, &next, joint).held_out_nrmse_augmented.unwrap_or(f64::INFINITY), next)
             });
             let Some((_, next)) = without.min_by(|a, b| a.0.total_cmp(&b.0)) else {
                 break;
@@ -299,9 +277,7 @@ fn fit_of(study: &Study, selected: &Selection, joint: usize) -> JointFit {
 /// is for any joint.
 fn harmed(study: &Study, selected: &Selection) -> (Option<usize>, bool) {
     let is_worse = |nominal: Option<f64>, augmented: Option<f64>| {
-        nominal
-            .zip(augmented)
-            .is_some_and(|(nominal, augmented)| judge::harms(nominal, augmented))
+        nominal.zip(augmented).is_some_and(|(nominal, augmented)| judge::harms(nominal, augmented))
     };
     let (mut moving, mut resting) = (None, false);
     for joint in 0..study.data.motions.dof {
@@ -320,18 +296,14 @@ fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Sel
     let loss = |selected: &Selection| {
         let of = |joint: usize| {
             let fit = fit_of(study, selected, joint);
-            let error = fit
-                .held_out_nrmse_augmented?
-                .hypot(fit.held_out_nrmse_resting.unwrap_or(0.0));
+            let error = fit.held_out_nrmse_augmented?.hypot(fit.held_out_nrmse_resting.unwrap_or(0.0));
             Some(error.max(f64::MIN_POSITIVE).ln())
         };
         (0..study.data.motions.dof).filter_map(of).sum::<f64>()
     };
     let trials = study.stated.weaker(&study.strengths).map(|strengths| {
         let products = study.products_at(&strengths);
-        let next = study
-            .problem(&products)
-            .choose(selected.set.clone(), &selected.fit.weights);
+        let next = study.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
         (loss(&next), strengths, next)
     });
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -17,17 +17,11 @@ pub fn useless(problem: &Problem<'_>, held: &Products, judged: &Judged) -> Optio
         .filter_map(|member| {
             let gain = held_out_gain(problem, Some(held), judged, member)?;
             // The background predicts nearly as well without the effect, but costs more evidence.
-            let allowed = if problem.is_background_too(&problem.candidates[member.candidate]) {
-                AS_WELL
-            } else {
-                0.0
-            };
+            let allowed = if problem.is_background_too(&problem.candidates[member.candidate]) { AS_WELL } else { 0.0 };
             Some((gain + allowed, member.candidate))
         })
         .collect();
-    let least = gains
-        .into_iter()
-        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+    let least = gains.into_iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
     (least.0 <= 0.0).then_some(least.1)
 }
 
@@ -52,8 +46,7 @@ pub fn held_out_gain(problem: &Problem<'_>, held: Option<&Products>, judged: &Ju
         return Some(if is_past && candidate.hypothesis.spec().is_friction {
             let mut bare = fit.clone();
             let own = bare.columns.iter().zip(&mut bare.coefficients);
-            own.filter(|(column, _)| candidate.columns.contains(column))
-                .for_each(|(_, value)| *value = 0.0);
+            own.filter(|(column, _)| candidate.columns.contains(column)).for_each(|(_, value)| *value = 0.0);
             refitted.max(gain(&bare))
         } else {
             refitted

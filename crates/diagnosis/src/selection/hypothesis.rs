@@ -18,11 +18,7 @@ const ROUNDS: usize = 2;
 
 /// The error that the request `one` is refused.
 fn refused(one: &Wanted, reason: impl Into<String>) -> DiagnosisError {
-    DiagnosisError::Wanted {
-        effect: one.effect.clone(),
-        joint: one.joint.clone(),
-        reason: reason.into(),
-    }
+    DiagnosisError::Wanted { effect: one.effect.clone(), joint: one.joint.clone(), reason: reason.into() }
 }
 
 /// A request, with indices of the study.
@@ -66,10 +62,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
     }
     for Place { wanted: one, .. } in waiting {
         let place = one.joint.as_deref().unwrap_or("the whole arm");
-        let remark = format!(
-            "{} on {place}: not testable with these recordings; it is not fitted",
-            one.effect
-        );
+        let remark = format!("{} on {place}: not testable with these recordings; it is not fitted", one.effect);
         study.data.motions.remarks.push(remark);
     }
     for round in 0..ROUNDS {
@@ -85,11 +78,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
     }
     let products = study.training_products();
     let members = judge::describe(&study.problem(&products), &selected);
-    Ok(Judged {
-        named: selected,
-        members,
-        unmodelled: Vec::new(),
-    })
+    Ok(Judged { named: selected, members, unmodelled: Vec::new() })
 }
 
 /// The indices of the joints.
@@ -98,9 +87,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
     for (k, one) in wanted.iter().enumerate() {
         let number = |name: &String| study.data.arm.joints().iter().position(|joint| joint.name == *name);
         let joint_of = |name: &Option<String>| match name {
-            Some(name) => number(name)
-                .map(Some)
-                .ok_or_else(|| refused(one, no_joint(name, study))),
+            Some(name) => number(name).map(Some).ok_or_else(|| refused(one, no_joint(name, study))),
             None => Ok(None),
         };
         let (mut joint, mut other) = (joint_of(&one.joint)?, joint_of(&one.other)?);
@@ -111,10 +98,7 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
         if let (Some(joint), Some(other)) = (joint, other)
             && !(1..=FARTHEST_COUPLED).contains(&(joint - other))
         {
-            return Err(refused(
-                one,
-                "acts on joints that are neighbours or have one joint between them",
-            ));
+            return Err(refused(one, "acts on joints that are neighbours or have one joint between them"));
         }
         let Some(spec) = effects::spec(&one.effect) else {
             return Err(refused(one, no_effect(&one.effect)));
@@ -139,17 +123,12 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
 /// understood), or with all names.
 fn no_effect(name: &str) -> String {
     let names: Vec<String> = CATALOGUE.iter().map(|kind| kind.spec().name.to_owned()).collect();
-    let titled = CATALOGUE
-        .iter()
-        .find(|kind| kind.spec().title.eq_ignore_ascii_case(name));
+    let titled = CATALOGUE.iter().find(|kind| kind.spec().title.eq_ignore_ascii_case(name));
     let part = name.to_lowercase();
     let mut with_it = names.iter().filter(|known| known.contains(&part));
     // A part of one name only.
     let only_one = with_it.next().filter(|_| !part.is_empty() && with_it.next().is_none());
-    let meant = titled
-        .map(|kind| kind.spec().name)
-        .or(only_one.map(String::as_str))
-        .or_else(|| nearest(name, &names));
+    let meant = titled.map(|kind| kind.spec().name).or(only_one.map(String::as_str)).or_else(|| nearest(name, &names));
     match meant {
         Some(meant) => format!("no such effect is in the catalogue; did you mean {meant}?"),
         None => format!("no such effect is in the catalogue, which has {}", names.join(", ")),
@@ -160,10 +139,7 @@ fn no_effect(name: &str) -> String {
 fn no_joint(name: &str, study: &Study) -> String {
     let names: Vec<String> = study.data.arm.joints().iter().map(|joint| joint.name.clone()).collect();
     let meant = nearest(name, &names).map_or_else(String::new, |meant| format!("did you mean \"{meant}\"? "));
-    format!(
-        "the robot has no joint \"{name}\"; {meant}its joints are {}",
-        names.join(", ")
-    )
+    format!("the robot has no joint \"{name}\"; {meant}its joints are {}", names.join(", "))
 }
 
 /// `selected` with the best form of an effect in the place of the member at `instead`, or added.
@@ -205,10 +181,7 @@ fn best(
         (!problem.is_possible(c, &next.fit), next)
     };
     // Physically possible forms are preferred, if there are any.
-    let best = forms
-        .into_iter()
-        .map(with)
-        .min_by(|a, b| a.0.cmp(&b.0).then(a.1.score.total_cmp(&b.1.score)));
+    let best = forms.into_iter().map(with).min_by(|a, b| a.0.cmp(&b.0).then(a.1.score.total_cmp(&b.1.score)));
     best.map(|(_, next)| next)
 }
 

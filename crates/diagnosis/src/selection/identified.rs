@@ -13,10 +13,7 @@ use crate::thresholds::FREE_INERTIALS;
 /// reversals. `study` is that before the search, with the columns about the nominal arm.
 pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let dof = study.data.arm.dof();
-    let strengths = Strengths {
-        links: vec![FREE_INERTIALS; dof],
-        ..Strengths::none(dof)
-    };
+    let strengths = Strengths { links: vec![FREE_INERTIALS; dof], ..Strengths::none(dof) };
     let is_part = |&candidate: &usize| {
         let hypothesis = study.candidates[candidate].hypothesis;
         study.always_acts(candidate) && OMITTED_BY_MOST.iter().any(|&kind| hypothesis.is(kind))

@@ -71,11 +71,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
     };
     while let Some(off) = off(&selected) {
         let next = problem.without(&selected, off);
-        study.note(
-            "its coefficient differs from one, for which it was simulated",
-            &selected,
-            &next,
-        );
+        study.note("its coefficient differs from one, for which it was simulated", &selected, &next);
         selected = next;
     }
     while let Some(long) = lasting(&problem, &selected) {
@@ -99,9 +95,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         study.note("too small, or too little evidence, for a name", &selected, &next);
         selected = next;
     }
-    let (unmodelled, named): (Vec<Member>, Vec<Member>) = members
-        .into_iter()
-        .partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
+    let (unmodelled, named): (Vec<Member>, Vec<Member>) =
+        members.into_iter().partition(|member| study.candidates[member.candidate].hypothesis.name().is_none());
     let mut kept = problem.choose(named.iter().map(|m| m.candidate).collect(), &selected.fit.weights);
     if had_unmodelled {
         // Unmodelled forms, including those that were dropped, may have displaced simple effects. A constant is allowed if no other
@@ -111,10 +106,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         let mut simple = study.allowed();
         simple.retain(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant && study.always_acts(c));
         let with_all = problem.forward(kept.clone(), &simple);
-        let with_forms: Vec<Option<usize>> = beside(&problem, &with_all, &unmodelled)
-            .iter()
-            .map(|member| candidates[member.candidate].joint)
-            .collect();
+        let with_forms: Vec<Option<usize>> =
+            beside(&problem, &with_all, &unmodelled).iter().map(|member| candidates[member.candidate].joint).collect();
         let exceeds_the_rest = |c: usize| {
             let Some(joint) = candidates[c].joint else { return false };
             let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
@@ -148,29 +141,22 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
     }
     let members = describe(&problem, &kept);
     let unmodelled = beside(&problem, &kept, &unmodelled);
-    Judged {
-        named: kept,
-        members,
-        unmodelled,
-    }
+    Judged { named: kept, members, unmodelled }
 }
 
 /// The longest contact in a recording of which contacts cover too much: together they replace another effect.
 fn lasting(problem: &Problem<'_>, selected: &Selection) -> Option<usize> {
     let window = |&c: &usize| Some((c, problem.candidates[c].window(problem.table)?));
     let windows: Vec<(usize, [f64; 2])> = selected.set.iter().filter_map(window).collect();
-    let (recording, share) = problem
-        .data
-        .contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
+    let (recording, share) =
+        problem.data.contact_share(&windows.iter().map(|(_, window)| *window).collect::<Vec<_>>())?;
     if share <= MOST_OF_A_RECORDING {
         return None;
     }
     let is_there = |[from, to]: [f64; 2]| problem.data.motions.recording_at(0.5 * (from + to)) == Some(recording);
     let there = windows.iter().filter(|(_, window)| is_there(*window));
     let length = |[from, to]: [f64; 2]| to - from;
-    there
-        .max_by(|a, b| length(a.1).total_cmp(&length(b.1)))
-        .map(|(c, _)| *c)
+    there.max_by(|a, b| length(a.1).total_cmp(&length(b.1))).map(|(c, _)| *c)
 }
 
 /// A contact that is over soon after its recording has begun.
@@ -197,17 +183,10 @@ fn beside(problem: &Problem<'_>, kept: &Selection, unmodelled: &[Member]) -> Vec
         let fails = |member: &Member| {
             let joint = problem.candidates[member.candidate].joint.unwrap_or(0);
             let mismatch = problem.products.power(joint).sqrt() / problem.data.scales.torque[joint].max(1e-300);
-            member.share()
-                < problem
-                    .thresholds
-                    .least_unmodelled_share
-                    .max(LEAST_OF_MISMATCH * mismatch)
+            member.share() < problem.thresholds.least_unmodelled_share.max(LEAST_OF_MISMATCH * mismatch)
                 || member.evidence < problem.thresholds.least_unmodelled_evidence
         };
-        let weak = members
-            .iter()
-            .filter(|m| fails(m))
-            .min_by(|a, b| a.evidence.total_cmp(&b.evidence));
+        let weak = members.iter().filter(|m| fails(m)).min_by(|a, b| a.evidence.total_cmp(&b.evidence));
         match weak {
             Some(weak) => set.retain(|&c| c != weak.candidate),
             None => return members,
@@ -246,11 +225,8 @@ fn shares(problem: &Problem<'_>, selected: &Selection, candidate: usize) -> Vec<
             let torque = problem.table.torque(joint, columns, &values);
             let rows = problem.table.moving_rows(joint, &problem.data.fitted);
             let (mean, variance) = moments(rows.iter().map(|&row| torque[row]));
-            let size = if variance < (NEARLY_CONSTANT * mean).powi(2) {
-                mean.hypot(variance.sqrt())
-            } else {
-                variance.sqrt()
-            };
+            let size =
+                if variance < (NEARLY_CONSTANT * mean).powi(2) { mean.hypot(variance.sqrt()) } else { variance.sqrt() };
             size / problem.data.scales.torque[joint].max(1e-300)
         })
         .collect()
@@ -293,17 +269,11 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
     let dof = study.data.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {
-        members
-            .iter()
-            .filter(|m| wanted(m))
-            .map(|m| m.shares[joint])
-            .fold(0.0, f64::max)
+        members.iter().filter(|m| wanted(m)).map(|m| m.shares[joint]).fold(0.0, f64::max)
     };
     let fails = |member: &Member| -> bool {
         let share = member.share();
-        let at = (0..dof)
-            .max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))
-            .unwrap_or(0);
+        let at = (0..dof).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b])).unwrap_or(0);
         if !is_named(member) {
             let named = largest(&|m| is_named(m) && !is_baseline(m), at);
             return share < study.thresholds.least_unmodelled_share
@@ -344,12 +314,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             };
             let share = member.shares[joint];
             let alike = |&(name, part): &(&str, f64)| part * largest(&|m| hypothesis(m).name() == Some(name), joint);
-            let alike = hypothesis(member)
-                .spec()
-                .least_beside
-                .iter()
-                .map(alike)
-                .fold(0.0, f64::max);
+            let alike = hypothesis(member).spec().least_beside.iter().map(alike).fold(0.0, f64::max);
             share >= study.thresholds.least_share
                 && share >= alike
                 && share >= study.thresholds.beside_a_larger * others(false)
@@ -358,11 +323,8 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
                 && share >= study.thresholds.beside_unmodelled * largest(&|m| !is_named(m), joint)
         };
         // The end of a gap jolts all joints, most of all its own. A contact must stand out on the joint on which it is largest.
-        let stands_out = if hypothesis(member).is(&ExternalContact) {
-            stands_out(at)
-        } else {
-            (0..dof).any(stands_out)
-        };
+        let stands_out =
+            if hypothesis(member).is(&ExternalContact) { stands_out(at) } else { (0..dof).any(stands_out) };
         member.evidence < needed || member.beyond < hypothesis(member).spec().least_beyond_simpler || !stands_out
     };
     (0..members.len())

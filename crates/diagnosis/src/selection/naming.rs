@@ -96,8 +96,7 @@ impl Estimate for Reader<'_> {
         let Some(place) = place else { return 0.0 };
         let of_joint = &table.joints[joint];
         let rows = of_joint.x[place].iter().zip(&of_joint.moving);
-        rows.filter(|(_, moving)| **moving)
-            .fold(0.0, |most: f64, (x, _)| most.max(x.abs()))
+        rows.filter(|(_, moving)| **moving).fold(0.0, |most: f64, (x, _)| most.max(x.abs()))
     }
 
     fn positions(&self) -> [f64; 2] {
@@ -156,13 +155,7 @@ impl Estimate for Reader<'_> {
 /// The effect of `candidate`, if its hypothesis has a name, and the effect that it brings along.
 pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named> {
     let kind = study.candidates[candidate].hypothesis.kind;
-    let mut reader = Reader {
-        study,
-        resampled,
-        candidate,
-        kind,
-        parameters: BTreeMap::new(),
-    };
+    let mut reader = Reader { study, resampled, candidate, kind, parameters: BTreeMap::new() };
     let Some(named) = reader.read(kind) else {
         return Vec::new();
     };
@@ -170,12 +163,7 @@ pub fn name(study: &Study, resampled: &Resampled, candidate: usize) -> Vec<Named
     let brought = brought.and_then(|kind| reader.read(kind));
     // An effect that is brought along must be clearly present.
     let is_clear = |named: &Named| {
-        let main = named
-            .effect
-            .spec()
-            .main
-            .first()
-            .and_then(|main| named.parameters.get(main));
+        let main = named.effect.spec().main.first().and_then(|main| named.parameters.get(main));
         main.is_some_and(|main| main.ci95[0] > 0.0)
     };
     std::iter::once(named).chain(brought.filter(is_clear)).collect()

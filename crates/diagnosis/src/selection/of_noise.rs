@@ -17,10 +17,7 @@ pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
         return 0.0;
     }
     let fitted = data.motions.sources.iter().zip(&data.fitted);
-    let sources: Vec<_> = fitted
-        .filter(|(_, fitted)| **fitted)
-        .map(|(source, _)| source)
-        .collect();
+    let sources: Vec<_> = fitted.filter(|(_, fitted)| **fitted).map(|(source, _)| source).collect();
     let of_link: f64 = (0..data.motions.dof)
         .map(|by| {
             let acceleration = mean_square(sources.iter().map(|source| source.acceleration_noise[by]));
@@ -40,13 +37,7 @@ pub fn may_be_noise(study: &Study, candidate: usize, evidence: f64) -> bool {
     };
     let place = study.table.place[joint][candidate.columns[0]];
     let column = place.map(|place| &study.table.joints[joint].x[place]);
-    let variance = column.map_or(0.0, |column| {
-        study.table.spread(joint, &study.data.fitted, column).powi(2)
-    });
-    let most = if evidence < BEYOND_NOISE {
-        NOISE_OF_A_SPRING
-    } else {
-        MUCH_NOISE
-    };
+    let variance = column.map_or(0.0, |column| study.table.spread(joint, &study.data.fitted, column).powi(2));
+    let most = if evidence < BEYOND_NOISE { NOISE_OF_A_SPRING } else { MUCH_NOISE };
     noise(study, candidate, joint) > most * variance
 }

@@ -30,12 +30,8 @@ pub fn exported(data: &Data, table: &Table, fit: &Fit, joint: usize) -> Vec<f64>
 }
 
 fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn(&Term) -> bool) -> Vec<f64> {
-    let (columns, coefficients): (Vec<usize>, Vec<f64>) = fit
-        .columns
-        .iter()
-        .zip(&fit.coefficients)
-        .filter(|&(&column, _)| counts(&table.terms[column]))
-        .unzip();
+    let (columns, coefficients): (Vec<usize>, Vec<f64>) =
+        fit.columns.iter().zip(&fit.coefficients).filter(|&(&column, _)| counts(&table.terms[column])).unzip();
     let mut residual = table.residual(joint, &columns, &coefficients);
     let dry: Vec<(usize, f64)> = fit
         .columns
@@ -64,11 +60,7 @@ fn residual(data: &Data, table: &Table, fit: &Fit, joint: usize, counts: impl Fn
         }
         let free = residual[row] + as_moving[row] - middle + subtracted;
         // Friction that is found beside a known one may be less than none.
-        let cone = if holds > 0.0 {
-            (holds + cone).max(0.0)
-        } else {
-            cone.abs()
-        };
+        let cone = if holds > 0.0 { (holds + cone).max(0.0) } else { cone.abs() };
         residual[row] = free - free.clamp(-cone, cone);
     }
     residual
@@ -110,11 +102,7 @@ pub fn errors(data: &Data, table: &Table, joint: usize, augmented: &[f64]) -> Jo
     };
     // Only samples in motion count. At rest, the measured torque depends on friction, a brake or the previous motion.
     let moves = held.iter().filter(|&&row| moving[row]).count() >= LEAST_ROWS;
-    let counted = if moves {
-        moving.clone()
-    } else {
-        vec![true; nominal.len()]
-    };
+    let counted = if moves { moving.clone() } else { vec![true; nominal.len()] };
     JointFit {
         torque_std: spread(&train),
         noise: data.noise[joint].sqrt(),

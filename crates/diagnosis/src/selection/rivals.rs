@@ -153,9 +153,8 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     let mut on_all_joints = Vec::new();
     if let Some(same) = finding.hypothesis.spec().same_on_all_joints {
         // Without a known load, a common factor of all masses and one of all torques cannot be distinguished.
-        let factors: Vec<usize> = (0..study.candidates.len())
-            .filter(|&c| study.candidates[c].hypothesis.name() == Some(same))
-            .collect();
+        let factors: Vec<usize> =
+            (0..study.candidates.len()).filter(|&c| study.candidates[c].hypothesis.name() == Some(same)).collect();
         let next = problem.choose([&set[..], &factors].concat(), &selected.fit.weights);
         if factors.iter().all(|&c| problem.is_possible(c, &next.fit)) {
             on_all_joints.extend(factors.iter().map(|&c| result(c, &next)));
@@ -167,12 +166,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         let hypothesis = Hypothesis::of(&InertialParameters);
         let trials = study.in_the_background(&set, selected);
         let results_of = |(link, next): (Option<usize>, Selection)| {
-            (
-                next.fit.loss - selected.fit.loss,
-                next.score - selected.score,
-                hypothesis,
-                link,
-            )
+            (next.fit.loss - selected.fit.loss, next.score - selected.score, hypothesis, link)
         };
         let best = trials.into_iter().map(results_of).min_by(|a, b| a.1.total_cmp(&b.1));
         as_likely = best.filter(|result| result.1 <= 0.0).map(|result| (result.2, result.3));
@@ -190,37 +184,15 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         .map(|&(_, _, hypothesis, joint)| (hypothesis, joint))
         .collect();
     rivals.extend(alias.filter(|alias| !rivals.contains(alias)));
-    let found = Paired {
-        study,
-        problem,
-        selected,
-        member,
-        set: &set,
-        allowance,
-        rivals: &rivals,
-    };
-    let pairs = if finding.hypothesis.spec().is_baseline {
-        Vec::new()
-    } else {
-        found.pairs(alone, &others)
-    };
+    let found = Paired { study, problem, selected, member, set: &set, allowance, rivals: &rivals };
+    let pairs = if finding.hypothesis.spec().is_baseline { Vec::new() } else { found.pairs(alone, &others) };
     // A simpler hypothesis is more probable: the margin includes the costs.
     let pair = pairs.iter().map(|pair| pair.1).fold(f64::INFINITY, f64::min);
     let margin_over_single = explained.min(single).min(pair).min(decided.unwrap_or(f64::INFINITY));
     // Neither the motion nor its size tells what a constant torque is that is smaller than the friction.
-    let over_alias = if alias.is_some() && decided.is_none() {
-        0.0
-    } else {
-        f64::INFINITY
-    };
+    let over_alias = if alias.is_some() && decided.is_none() { 0.0 } else { f64::INFINITY };
     let margin = margin_over_single.min(of_all_joints).min(over_alias);
-    Standing {
-        rivals,
-        pairs: pairs.into_iter().map(|pair| pair.2).collect(),
-        margin,
-        margin_over_single,
-        as_likely,
-    }
+    Standing { rivals, pairs: pairs.into_iter().map(|pair| pair.2).collect(), margin, margin_over_single, as_likely }
 }
 
 /// The loss and the score of `next` (nats), in which `alternatives` stand in the place of `member`, beyond those of `selected`; or, if
@@ -295,14 +267,8 @@ impl Paired<'_> {
                 if !are_possible || pairs.iter().any(|pair| pair.2 == names) {
                     continue;
                 }
-                let (loss, score) = in_place(
-                    self.problem,
-                    self.selected,
-                    self.member,
-                    &[one, other],
-                    &both,
-                    self.allowance,
-                );
+                let (loss, score) =
+                    in_place(self.problem, self.selected, self.member, &[one, other], &both, self.allowance);
                 if loss <= self.allowance {
                     pairs.push((loss, score, names));
                 }

@@ -26,9 +26,7 @@ pub fn special_forms(study: &Study, selected: &Selection) -> (f64, Vec<Rival>) {
         .map(|(next, form)| (next.score, form))
         .collect();
     scores.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let margin = scores
-        .first()
-        .map_or(f64::INFINITY, |(score, _)| score - selected.score);
+    let margin = scores.first().map_or(f64::INFINITY, |(score, _)| score - selected.score);
     let mut forms: Vec<Rival> = Vec::new();
     for form in study.given_up.iter().chain(scores.iter().map(|(_, form)| form)) {
         let is_named = |&c: &usize| (study.candidates[c].hypothesis, study.candidates[c].joint) == *form;
@@ -77,10 +75,7 @@ fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Se
         candidate.hypothesis.name().is_some()
             && (candidate.hypothesis.spec().may_be_inertial || candidate.hypothesis.is(&RotorInertia))
             && problem.acts(candidate) == Acts::Always
-            && !selected
-                .set
-                .iter()
-                .any(|&other| other == c || problem.exclude(c, other))
+            && !selected.set.iter().any(|&other| other == c || problem.exclude(c, other))
     };
     let free: Vec<usize> = study.allowed().into_iter().filter(is_free).collect();
     let mut promises = problem.promises(&base, &free);

@@ -51,11 +51,7 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Judged, tried
         let next = study.problem(&products).choose(set, &judged.named.fit.weights);
         // Wrong inertial parameters of all links resemble wrong torque constants of all drives.
         if is_clear(study, &next, scale) {
-            study.note(
-                "its torque constant is beyond the usual tolerance",
-                &judged.named,
-                &next,
-            );
+            study.note("its torque constant is beyond the usual tolerance", &judged.named, &next);
             judged.members = judge::describe(&study.problem(&products), &next);
             judged.named = next;
         } else {
@@ -116,12 +112,7 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
 
 /// Whether most of the torque constants deviate by `least` or more in the same direction: a common cause, and not an effect on each.
 fn are_alike(deviations: &[f64], least: f64) -> bool {
-    let count = |sign: f64| {
-        deviations
-            .iter()
-            .filter(|&&deviation| sign * deviation >= least)
-            .count()
-    };
+    let count = |sign: f64| deviations.iter().filter(|&&deviation| sign * deviation >= least).count();
     let most = count(1.0).max(count(-1.0));
     most >= LEAST_ALIKE && 2 * most > deviations.len()
 }

@@ -70,11 +70,7 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
         let is_impossible =
             |named: &Named| Corrected::new(&study.data.arm, std::slice::from_ref(&named.effect)).is_err();
         // A torque constant that changed was wrong by as much before, so that its tolerance does not matter.
-        let accuracy = if study.always_acts(member.candidate) {
-            accuracy
-        } else {
-            0.0
-        };
+        let accuracy = if study.always_acts(member.candidate) { accuracy } else { 0.0 };
         // The intervals of its parameters, or the other effects, exclude it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
@@ -92,11 +88,7 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
         let acts_on = |&joint: &usize| member.shares[joint] > 0.0;
         let joints: Vec<usize> = (0..study.data.motions.dof).filter(acts_on).collect();
         let moves = |row: usize| joints.iter().any(|&joint| study.table.joints[joint].moving[row]);
-        let times: Vec<f64> = rows
-            .iter()
-            .filter(|&&row| moves(row))
-            .map(|&row| row_times[row])
-            .collect();
+        let times: Vec<f64> = rows.iter().filter(|&&row| moves(row)).map(|&row| row_times[row]).collect();
         let onset = |named: Named| named.parameters.get("onset").map(|parameter| parameter.ci95);
         let mut onsets = name(study, resampled, member.candidate).into_iter().filter_map(onset);
         onsets.any(|onset| is_anywhere(onset, &times))
@@ -170,9 +162,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
     };
     match candidate.joint {
         Some(joint) => is_part(joint),
-        None => (0..study.data.motions.dof)
-            .filter(|&joint| member.shares[joint] > 0.0)
-            .all(is_part),
+        None => (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0).all(is_part),
     }
 }
 
@@ -206,17 +196,10 @@ fn may_be_own_friction(study: &Study, judged: &Judged, member: &judge::Member) -
     };
     let fit = &judged.named.fit;
     let is_warming = |column: usize| study.table.terms[column].is(&WARMING) && candidate.columns.contains(&column);
-    let columns: Vec<usize> = fit
-        .selected()
-        .iter()
-        .copied()
-        .filter(|&column| !is_warming(column))
-        .collect();
+    let columns: Vec<usize> = fit.selected().iter().copied().filter(|&column| !is_warming(column)).collect();
     let moves = |&recording: &usize| study.data.fitted[recording] && study.table.joints[joint].count[recording] > 0;
     let recordings = (0..study.data.fitted.len()).filter(moves);
-    let levels = recordings
-        .map(|recording| Term::on(&OWN_FRICTION, joint).of(recording))
-        .collect();
+    let levels = recordings.map(|recording| Term::on(&OWN_FRICTION, joint).of(recording)).collect();
     let with = study.fit_with(fit.selected(), Vec::new(), &fit.weights);
     let level = study.fit_with(&columns, levels, &fit.weights);
     level.loss - with.loss < LEAST_WITHIN_RECORDINGS

@@ -104,10 +104,7 @@ fn blocks(study: &Study, member: &Member, changed_at: f64) -> Vec<Block> {
             }
         }
         let count = pieces.len().min(BLOCKS_A_SIDE);
-        blocks.extend((0..count).map(|block| Block {
-            start: pieces[block * pieces.len() / count],
-            is_after,
-        }));
+        blocks.extend((0..count).map(|block| Block { start: pieces[block * pieces.len() / count], is_after }));
     }
     blocks
 }
@@ -129,20 +126,10 @@ fn over_variation(study: &Study, judged: &Judged, member: &Member, blocks: &[Blo
     // A size that acts always is fitted once.
     kept.retain(|&column| !terms.contains(&study.table.terms[column]));
     let acts = |block: usize| {
-        if block == 0 {
-            Acts::Always
-        } else {
-            Acts::Since(blocks[block].start)
-        }
+        if block == 0 { Acts::Always } else { Acts::Since(blocks[block].start) }
     };
-    let more: Vec<Term> = (0..blocks.len())
-        .flat_map(|block| {
-            terms.iter().map(move |term| Term {
-                acts: acts(block),
-                ..*term
-            })
-        })
-        .collect();
+    let more: Vec<Term> =
+        (0..blocks.len()).flat_map(|block| terms.iter().map(move |term| Term { acts: acts(block), ..*term })).collect();
     let (table, fit) = study.table_and_fit_with(&kept, more, &fit.weights);
     let first = fit.background + kept.len();
     // The size of each term in each stretch: each column adds to those before it.
@@ -168,9 +155,8 @@ impl Torques {
         let mut all: Vec<Vec<Vec<f64>>> = blocks.iter().map(|_| Vec::new()).collect();
         for joint in (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0) {
             let unit = study.data.scales.torque[joint];
-            let columns: Vec<Vec<f64>> = (first..first + terms)
-                .map(|column| table.torque(joint, &[column], &[1.0]))
-                .collect();
+            let columns: Vec<Vec<f64>> =
+                (first..first + terms).map(|column| table.torque(joint, &[column], &[1.0])).collect();
             for row in table.moving_rows(joint, &study.data.fitted) {
                 let block = blocks.iter().rposition(|block| block.start <= times[row]);
                 all[block.unwrap_or(0)].push(columns.iter().map(|column| column[row] / unit).collect());
@@ -205,9 +191,8 @@ impl Torques {
         };
         let sides = [false, true].map(|is_after| {
             let zero = (DMatrix::zeros(terms, terms), DVector::zeros(terms));
-            side(is_after).fold(zero, |(gram, torque), block| {
-                (gram + &grams[block], torque + &grams[block] * &sizes[block])
-            })
+            side(is_after)
+                .fold(zero, |(gram, torque), block| (gram + &grams[block], torque + &grams[block] * &sizes[block]))
         });
         if sides.iter().any(|(gram, _)| gram.trace() <= 0.0) {
             return None;
@@ -239,10 +224,7 @@ mod tests {
 
     /// Two stretches before and two after a change.
     fn four_blocks() -> Vec<Block> {
-        let block = |block: i32| Block {
-            start: f64::from(block),
-            is_after: block >= 2,
-        };
+        let block = |block: i32| Block { start: f64::from(block), is_after: block >= 2 };
         (0..4).map(block).collect()
     }
 
@@ -268,9 +250,7 @@ mod tests {
         let sums = [1.0, 1.2, 2.0, 2.4];
         let ratio = |apart: [f64; 4]| {
             let sizes: Vec<Vec<f64>> = (0..4).map(|k| vec![sums[k] + apart[k], -apart[k], apart[k]]).collect();
-            Torques(rows.clone())
-                .over_variation(&sizes, &blocks)
-                .expect("both sides have torque")
+            Torques(rows.clone()).over_variation(&sizes, &blocks).expect("both sides have torque")
         };
         let together = ratio([0.0; 4]);
         let apart = ratio([30.0, -20.0, 50.0, 10.0]);
@@ -282,9 +262,7 @@ mod tests {
     fn what_one_side_does_not_determine_is_no_change() {
         let blocks = four_blocks();
         let sum = vec![vec![1.0, 1.0]; 10];
-        let each: Vec<Vec<f64>> = (0..10)
-            .map(|row| vec![f64::from(row % 2), f64::from(1 - row % 2)])
-            .collect();
+        let each: Vec<Vec<f64>> = (0..10).map(|row| vec![f64::from(row % 2), f64::from(1 - row % 2)]).collect();
         let torques = Torques(vec![sum.clone(), sum, each.clone(), each]);
         let ratio = |before: [f64; 2]| {
             let sizes = [before, [0.9, 0.1], [1.1, 0.0], [0.9, 0.1]].map(|sizes| sizes.to_vec());

@@ -80,12 +80,8 @@ pub const MOST_SUGGESTIONS: usize = 3;
 /// The largest number of rounds of refinement. Source: first diagnosis.
 pub const MOST_REFINEMENTS: usize = 2;
 /// The factors on a size in each round of its refinement.
-pub const REFINED_SIZES: [[f64; 4]; 4] = [
-    [0.75, 0.87, 1.15, 1.33],
-    [0.9, 0.95, 1.05, 1.1],
-    [0.965, 0.983, 1.017, 1.035],
-    [0.988, 0.994, 1.006, 1.012],
-];
+pub const REFINED_SIZES: [[f64; 4]; 4] =
+    [[0.75, 0.87, 1.15, 1.33], [0.9, 0.95, 1.05, 1.1], [0.965, 0.983, 1.017, 1.035], [0.988, 0.994, 1.006, 1.012]];
 /// The steps of a second size, of a ripple's period and of an onset in the first round of refinement, relative to the largest one.
 pub const REFINED_STEPS: [f64; 4] = [-1.0, -0.4, 0.4, 1.0];
 /// The ratio of these steps to those of the round before.

@@ -60,20 +60,11 @@ fn relations() -> String {
     let row = |spec: &Spec| {
         let mut relations: Vec<String> = Vec::new();
         if let (Some(plain), true) = (spec.generalises, spec.least_beyond_simpler > 0.0) {
-            relations.push(format!(
-                "explains {} of the torque beyond `{plain}`",
-                spec.least_beyond_simpler
-            ));
+            relations.push(format!("explains {} of the torque beyond `{plain}`", spec.least_beyond_simpler));
         }
-        relations.extend(
-            spec.least_beside
-                .iter()
-                .map(|(name, part)| format!("exceeds {part} of `{name}`")),
-        );
+        relations.extend(spec.least_beside.iter().map(|(name, part)| format!("exceeds {part} of `{name}`")));
         if let Some(nats) = spec.least_beside_inertials {
-            relations.push(format!(
-                "brings {nats} nats beside the best correction of all inertial parameters"
-            ));
+            relations.push(format!("brings {nats} nats beside the best correction of all inertial parameters"));
         }
         if let Some(most) = spec.most_beside_inertials {
             relations.push(format!("deviates by at most {most} where the URDF is wrong everywhere"));
@@ -118,8 +109,7 @@ fn every_decisive_threshold_has_a_source() {
     let table = rows("", DECISIVE);
     let names = |with: &str| -> Vec<String> {
         let rows = table.lines().filter(|row| row.contains(with));
-        rows.filter_map(|row| row.split('`').nth(1).map(str::to_owned))
-            .collect()
+        rows.filter_map(|row| row.split('`').nth(1).map(str::to_owned)).collect()
     };
     assert_eq!(names(""), super::Thresholds::NAMES);
     assert_eq!(names(" Source: "), super::Thresholds::NAMES);
@@ -130,9 +120,7 @@ fn every_decisive_threshold_has_a_source() {
 fn the_page_lists_every_threshold_with_its_value() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/thresholds.md");
     let page = std::fs::read_to_string(path).expect("the page is there");
-    let (head, rest) = page
-        .split_once("<!-- begin -->\n")
-        .expect("the page says where the tables begin");
+    let (head, rest) = page.split_once("<!-- begin -->\n").expect("the page says where the tables begin");
     let (_, tail) = rest.split_once("<!-- end -->").expect("the page says where they end");
     let mut tables = format!(
         "\n## Checks of recordings against the URDF\n\n| threshold | value | decides |\n|---|---|---|\n{}",
@@ -141,11 +129,8 @@ fn the_page_lists_every_threshold_with_its_value() {
     for (phase, source) in FILES {
         let table = rows("", source);
         assert!(!table.is_empty(), "{phase}");
-        write!(
-            tables,
-            "\n## {phase}\n\n| threshold | value | decides |\n|---|---|---|\n{table}"
-        )
-        .expect("a string takes it");
+        write!(tables, "\n## {phase}\n\n| threshold | value | decides |\n|---|---|---|\n{table}")
+            .expect("a string takes it");
     }
     write!(
         tables,

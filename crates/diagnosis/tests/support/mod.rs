@@ -118,10 +118,7 @@ pub fn regular(recording: &Recording) -> RegularRecording {
 /// Diagnoses the model `believed` with the `known` effects on recordings of `robot` with the effects `injected`: two of 16
 /// s for training and one of 10 s held out.
 pub fn diagnosed(believed: &Arm, robot: &Arm, injected: Injected<'_>, known: Vec<Effect>) -> Diagnosis {
-    let options = Options {
-        known,
-        ..Options::default()
-    };
+    let options = Options { known, ..Options::default() };
     diagnosed_with(believed, robot, injected, &options).expect("it can be diagnosed")
 }
 
@@ -141,15 +138,9 @@ pub fn diagnosed_with(
     let diagnosis = diagnose(believed, &inputs(&recordings), options, &|_| {})?;
     for open in diagnosis.report.unexplained.iter().filter(|open| open.time.is_empty()) {
         let fit = &diagnosis.report.fit[&open.joint];
-        let error = fit
-            .held_out_nrmse_augmented
-            .unwrap_or(0.0)
-            .max(fit.train_nrmse_augmented);
+        let error = fit.held_out_nrmse_augmented.unwrap_or(0.0).max(fit.train_nrmse_augmented);
         // Rows within a contact count in one of the two alone.
-        assert!(
-            open.share <= 1.1 * error,
-            "a part is larger than the whole: {open:?}, {fit:?}"
-        );
+        assert!(open.share <= 1.1 * error, "a part is larger than the whole: {open:?}, {fit:?}");
     }
     Ok(diagnosis)
 }
@@ -159,12 +150,7 @@ pub fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
     ["a", "b", "c", "d"]
         .into_iter()
         .zip(recordings)
-        .map(|(name, recording)| Input {
-            name,
-            recording,
-            held_out: name == "c",
-            before: false,
-        })
+        .map(|(name, recording)| Input { name, recording, held_out: name == "c", before: false })
         .collect()
 }
 
@@ -197,9 +183,7 @@ pub fn named(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
     let plain = ["viscous_friction", "coulomb_friction"];
     let findings = diagnosis.report.findings.iter();
     let special = findings.filter(|finding| !plain.contains(&finding.effect));
-    special
-        .map(|finding| (finding.effect, finding.joint.as_deref()))
-        .collect()
+    special.map(|finding| (finding.effect, finding.joint.as_deref())).collect()
 }
 
 /// The effects of the findings on a joint.
@@ -211,12 +195,7 @@ pub fn effects_on<'a>(diagnosis: &'a Diagnosis, joint: &str) -> Vec<&'a str> {
 
 /// The sentences of the findings.
 pub fn sentences(diagnosis: &Diagnosis) -> Vec<&str> {
-    diagnosis
-        .report
-        .findings
-        .iter()
-        .map(|finding| finding.sentence.as_str())
-        .collect()
+    diagnosis.report.findings.iter().map(|finding| finding.sentence.as_str()).collect()
 }
 
 /// Two errors (NRMSE) count as equal if they differ by less, because the fit takes the sign of a velocity near a reversal

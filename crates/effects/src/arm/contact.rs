@@ -34,10 +34,7 @@ static SPEC: Spec = Spec {
     may_be_in_one_recording: true,
     is_suggested: true,
     against: Against::Time,
-    experiment: Some(Experiment {
-        rank: 2,
-        text: "repeat the motion with the arm free of contact",
-    }),
+    experiment: Some(Experiment { rank: 2, text: "repeat the motion with the arm free of contact" }),
     ..Spec::EMPTY
 };
 
@@ -92,9 +89,7 @@ fn about_middle(term: &Term, factor: f64) -> Term {
 
 /// The columns of a force on the tool between two times (s), constant or (`round`) half a sine.
 pub fn columns(from: f64, to: f64, round: bool) -> Vec<Term> {
-    (0..3)
-        .map(|axis| Term::about(&FORCE, axis).form(usize::from(round)).sized([from, to]))
-        .collect()
+    (0..3).map(|axis| Term::about(&FORCE, axis).form(usize::from(round)).sized([from, to])).collect()
 }
 
 /// The start and the end of a contact's column (s); `None` for a column of another law.
@@ -153,11 +148,7 @@ impl EffectKind for ExternalContact {
 
     fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
         let start = effect.number("start");
-        machine.contacts.push(Contact {
-            start,
-            end: start + effect.number("duration"),
-            force: effect.vector("force"),
-        });
+        machine.contacts.push(Contact { start, end: start + effect.number("duration"), force: effect.vector("force") });
     }
 }
 

@@ -35,11 +35,7 @@ static SPEC: Spec = Spec {
 
 /// The torque for a unit of one of the ten inertial parameters (`of[1]`) of a link (`of[0]`). Its columns are formed for all
 /// links at once, from the regressor.
-pub static PARAMETER: Law = Law {
-    name: "inertial parameter",
-    needs_model: true,
-    ..Law::PLAIN
-};
+pub static PARAMETER: Law = Law { name: "inertial parameter", needs_model: true, ..Law::PLAIN };
 
 /// The share of the largest moment of inertia by which another may be negative, for rounding. Source: rounding.
 const ROUNDING: f64 = 1e-6;
@@ -54,11 +50,7 @@ impl InertialParameters {
 
     /// The body that an effect gives its link.
     pub fn body(effect: &Effect) -> Inertia {
-        Inertia {
-            mass: effect.number("mass"),
-            com: effect.vector("com"),
-            tensor: tensor(effect.list("inertia")),
-        }
+        Inertia { mass: effect.number("mass"), com: effect.vector("com"), tensor: tensor(effect.list("inertia")) }
     }
 }
 
@@ -75,11 +67,7 @@ impl EffectKind for InertialParameters {
     fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
         let moments = second_moments(&Self::body(effect).tensor).symmetric_eigenvalues();
         let wrong = moments.min() < -ROUNDING * moments.amax();
-        wrong.then_some((
-            "inertia's smallest second moment of mass",
-            moments.min(),
-            Range::NotNegative.requirement(),
-        ))
+        wrong.then_some(("inertia's smallest second moment of mass", moments.min(), Range::NotNegative.requirement()))
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
@@ -102,10 +90,7 @@ mod tests {
         let effect = InertialParameters::effect("a", &body);
         assert_eq!(InertialParameters::body(&effect), body);
         assert!(InertialParameters.refuse(&effect).is_none());
-        let thin = Inertia {
-            tensor: ::arm::Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.09)),
-            ..body
-        };
+        let thin = Inertia { tensor: ::arm::Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.09)), ..body };
         let effect = InertialParameters::effect("a", &thin);
         assert!(InertialParameters.refuse(&effect).is_some(), "no body has such moments");
     }

@@ -84,11 +84,7 @@ pub static WITHOUT_MOMENTS: Law = Law {
 fn felt(columns: &[Vec<f64>], parameter: usize, column: &[f64]) -> Vec<f64> {
     let largest = |column: &[f64]| column.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
     let scale = columns[..10].iter().map(|column| largest(column)).fold(0.0, f64::max);
-    if parameter > 0 && largest(column) < LEAST_FELT * scale {
-        vec![0.0; column.len()]
-    } else {
-        column.to_vec()
-    }
+    if parameter > 0 && largest(column) < LEAST_FELT * scale { vec![0.0; column.len()] } else { column.to_vec() }
 }
 
 /// A body that the URDF fixes to the last link and that is not mounted.
@@ -183,11 +179,7 @@ impl Payload {
 
     /// The body of a payload.
     pub fn inertia(effect: &Effect) -> Inertia {
-        Inertia {
-            mass: effect.number("mass"),
-            com: effect.vector("com"),
-            tensor: tensor(effect.list("inertia")),
-        }
+        Inertia { mass: effect.number("mass"), com: effect.vector("com"), tensor: tensor(effect.list("inertia")) }
     }
 }
 
@@ -227,11 +219,7 @@ impl EffectKind for Payload {
     }
 
     fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn {
-            turn: 4,
-            forms: |_| vec![with_moments(), without_moments()],
-            looked_for_with: 4,
-        })
+        Some(SetsIn { turn: 4, forms: |_| vec![with_moments(), without_moments()], looked_for_with: 4 })
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
@@ -290,11 +278,7 @@ impl EffectKind for Payload {
         let sense = effect.number("mass").signum();
         let moments = sense * tensor(effect.list("inertia")).symmetric_eigenvalues();
         let wrong = moments.min() < -ROUNDING * moments.amax();
-        wrong.then_some((
-            "inertia's smallest principal moment",
-            moments.min(),
-            Range::NotNegative.requirement(),
-        ))
+        wrong.then_some(("inertia's smallest principal moment", moments.min(), Range::NotNegative.requirement()))
     }
 
     /// Payloads add up: a known one and one that was found in addition. Two equal payloads are an error of the user.
@@ -303,11 +287,7 @@ impl EffectKind for Payload {
     }
 
     fn title(&self, effect: &Effect) -> &'static str {
-        if effect.number("mass") < 0.0 {
-            "tool not mounted"
-        } else {
-            SPEC.title
-        }
+        if effect.number("mass") < 0.0 { "tool not mounted" } else { SPEC.title }
     }
 
     fn sentence(&self, effect: &Effect) -> &'static str {
@@ -336,11 +316,7 @@ const LEAST_REACH: f64 = 0.2;
 
 /// The sum of the distances from joint to joint (m).
 fn reach(arm: &Arm) -> f64 {
-    let links: f64 = arm
-        .joints()
-        .iter()
-        .map(|joint| joint.parent_from_joint.translation.norm())
-        .sum();
+    let links: f64 = arm.joints().iter().map(|joint| joint.parent_from_joint.translation.norm()).sum();
     (links + arm.tool_frame().link_from_frame.translation.norm()).max(LEAST_REACH)
 }
 
@@ -353,12 +329,7 @@ mod tests {
     #[test]
     fn a_first_moment_without_torque_has_no_column() {
         let tilt = 3.7e-6;
-        let mut columns = vec![
-            vec![0.3, -0.2],
-            vec![0.5, -0.4],
-            vec![0.1, 0.2],
-            vec![9.81 * tilt, -9.81 * tilt],
-        ];
+        let mut columns = vec![vec![0.3, -0.2], vec![0.5, -0.4], vec![0.1, 0.2], vec![9.81 * tilt, -9.81 * tilt]];
         columns.extend(vec![vec![0.0; 2]; 6]);
         let column = |parameter: usize| felt(&columns, parameter, &columns[parameter]);
         assert_eq!(column(3), [0.0, 0.0]);
@@ -378,10 +349,8 @@ mod tests {
             (9, 1.5 * (com[0] * com[0] + com[1] * com[1])),
         ];
         let first = first.into_iter().enumerate();
-        let columns: Vec<_> = first
-            .chain(second)
-            .map(|(parameter, value)| (Term::about(&PARAMETER, parameter), value))
-            .collect();
+        let columns: Vec<_> =
+            first.chain(second).map(|(parameter, value)| (Term::about(&PARAMETER, parameter), value)).collect();
         agree(&effect, &columns);
     }
 }

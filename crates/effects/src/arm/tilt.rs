@@ -76,16 +76,8 @@ fn turn(usual: &Vector3<f64>, seen: &Vector3<f64>) -> (f64, Vector3<f64>) {
     let angle = axis.norm().atan2(seen.dot(usual));
     // On a ceiling, any horizontal axis gives the turn.
     let least = 1e-9 * usual.norm_squared();
-    let axis = if axis.norm() > least {
-        axis
-    } else {
-        usual.cross(&Vector3::x())
-    };
-    let axis = if axis.norm() > least {
-        axis
-    } else {
-        usual.cross(&Vector3::y())
-    };
+    let axis = if axis.norm() > least { axis } else { usual.cross(&Vector3::x()) };
+    let axis = if axis.norm() > least { axis } else { usual.cross(&Vector3::y()) };
     (angle, axis / axis.norm().max(f64::MIN_POSITIVE))
 }
 
@@ -115,11 +107,7 @@ fn read_gravity(estimate: &mut dyn Estimate) -> Option<Effect> {
     };
     let x = estimate.note("axis_x", |draw| axis(draw).x);
     let y = estimate.note("axis_y", |draw| axis(draw).y);
-    Some(
-        Effect::of(&GravityMisalignment)
-            .with("angle", angle)
-            .with("axis", [x, y, about.z]),
-    )
+    Some(Effect::of(&GravityMisalignment).with("angle", angle).with("axis", [x, y, about.z]))
 }
 
 impl EffectKind for GravityMisalignment {
@@ -181,10 +169,7 @@ mod tests {
     fn its_columns_are_its_torque() {
         let effect = Effect::of(&GravityMisalignment).with("angle", 1e-6);
         let effect = effect.with("axis", [0.6, 0.8, 0.0]);
-        agree(
-            &effect,
-            &[(Term::about(&TILT, 0), 0.6e-6), (Term::about(&TILT, 1), 0.8e-6)],
-        );
+        agree(&effect, &[(Term::about(&TILT, 0), 0.6e-6), (Term::about(&TILT, 1), 0.8e-6)]);
     }
 
     /// Large turns agree with the machine: on a slope, on a wall, on the ceiling.

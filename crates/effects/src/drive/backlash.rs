@@ -100,12 +100,8 @@ fn softened(term: &Term, mass: f64) -> Vec<Term> {
     if rigid.is_finite() {
         return Vec::new();
     }
-    let first = FIRST_STOPS
-        .iter()
-        .flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
-    first
-        .map(|(hertz, ratio)| term.sized([halfgap, stop(mass, hertz), ratio]))
-        .collect()
+    let first = FIRST_STOPS.iter().flat_map(|&hertz| STOP_RATIOS.map(|ratio| (hertz, ratio)));
+    first.map(|(hertz, ratio)| term.sized([halfgap, stop(mass, hertz), ratio])).collect()
 }
 
 impl EffectKind for Backlash {
@@ -151,11 +147,7 @@ impl EffectKind for Backlash {
     /// Where the gap is closed, compliant ends are a spring.
     fn noise_gain(&self, term: &Term, mass: f64, cutoff: f64) -> f64 {
         let [_, stop, ratio, ..] = term.sizes;
-        if stop.is_finite() {
-            noise_behind(stop, damping(stop, ratio, mass), mass, cutoff)
-        } else {
-            0.0
-        }
+        if stop.is_finite() { noise_behind(stop, damping(stop, ratio, mass), mass, cutoff) } else { 0.0 }
     }
 
     /// A coefficient below zero, beside effects that do not fit, is no gap.

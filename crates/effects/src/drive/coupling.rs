@@ -120,11 +120,7 @@ impl EffectKind for TransmissionCoupling {
         let other = estimate.arm().joints()[estimate.other()?].name.clone();
         let dry = estimate.terms().into_iter().find(|term| term.is(&PAIR_SIGN));
         let mut effect = Effect::of(&Self).on(estimate.joint_name()).with_other(other);
-        let parts = [
-            ("viscous", &PAIR_VELOCITY),
-            ("coulomb", &PAIR_SIGN),
-            ("inertia", &PAIR_ACCELERATION),
-        ];
+        let parts = [("viscous", &PAIR_VELOCITY), ("coulomb", &PAIR_SIGN), ("inertia", &PAIR_ACCELERATION)];
         for (key, law) in parts {
             let value = estimate.coefficient(key, estimate.at(law), 1.0);
             effect = effect.with(key, value);
@@ -161,10 +157,7 @@ mod tests {
         let effect = effect.with("viscous", 2.0).with("coulomb", 0.5).with("inertia", 3.0);
         let term = |law| Term::about(law, 1).of(0);
         let dry = term(&PAIR_SIGN).sized([1.0]);
-        agree(
-            &effect,
-            &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)],
-        );
+        agree(&effect, &[(term(&PAIR_VELOCITY), 2.0), (dry, 0.5), (term(&PAIR_ACCELERATION), 3.0)]);
     }
 
     #[test]

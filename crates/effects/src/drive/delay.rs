@@ -101,9 +101,7 @@ impl EffectKind for ActuationDelay {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let delay = estimate.terms().first()?.sizes[0];
-        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| {
-            (delay * (drawn + size)).max(0.0)
-        });
+        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| (delay * (drawn + size)).max(0.0));
         Some(Effect::of(&Self).on(estimate.joint_name()).with("delay", delay))
     }
 

@@ -77,10 +77,7 @@ impl EffectKind for JointElasticity {
             for hertz in RESONANCES {
                 let omega = 2.0 * std::f64::consts::PI * hertz;
                 let sizes = [mass * omega * omega, 2.0 * DAMPING_RATIO * mass * omega];
-                let terms = vec![
-                    Term::about(&ELASTIC, joint).sized(sizes),
-                    Term::on(&ACCELERATION, joint),
-                ];
+                let terms = vec![Term::about(&ELASTIC, joint).sized(sizes), Term::on(&ACCELERATION, joint)];
                 forms.push(Form::on(Turn::Compliance, joint, terms));
             }
         }
@@ -93,9 +90,8 @@ impl EffectKind for JointElasticity {
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let [stiffness, damping, ..] = estimate.terms().first()?.sizes;
-        let stiffness = estimate.simulated(Systematic::OfArm, "stiffness", |drawn, size| {
-            stiffness / (drawn - size).clamp(0.4, 2.5)
-        });
+        let stiffness = estimate
+            .simulated(Systematic::OfArm, "stiffness", |drawn, size| stiffness / (drawn - size).clamp(0.4, 2.5));
         let damping = estimate.size(Systematic::FromAbove, "damping", Size::Damping, damping);
         let effect = Effect::of(&Self).on(estimate.joint_name());
         Some(effect.with("stiffness", stiffness).with("damping", damping))
@@ -107,10 +103,8 @@ impl EffectKind for JointElasticity {
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.springs[at.joint] = Some(Sprung {
-            stiffness: effect.number("stiffness"),
-            damping: effect.number("damping"),
-        });
+        machine.springs[at.joint] =
+            Some(Sprung { stiffness: effect.number("stiffness"), damping: effect.number("damping") });
     }
 }
 

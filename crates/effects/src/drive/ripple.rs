@@ -127,9 +127,6 @@ mod tests {
         let effect = Effect::of(&TorqueRipple).on("a").with("amplitude", 0.5);
         let effect = effect.with("periods", 6.0).with("phase", 0.1);
         let columns = columns(0, 6.0);
-        agree(
-            &effect,
-            &[(columns[0], 0.5 * 0.1_f64.cos()), (columns[1], 0.5 * 0.1_f64.sin())],
-        );
+        agree(&effect, &[(columns[0], 0.5 * 0.1_f64.cos()), (columns[1], 0.5 * 0.1_f64.sin())]);
     }
 }

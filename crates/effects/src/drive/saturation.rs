@@ -25,9 +25,7 @@ static SPEC: Spec = Spec {
     // Neither of two in the cases of `torque_scale` was right; they were up to 0.9 times as large.
     least_beside_residual: Some(1.5),
     is_simulated: true,
-    detectability: Detectability::Limit {
-        because: "no torque limit was reached",
-    },
+    detectability: Detectability::Limit { because: "no torque limit was reached" },
     not_testable_turn: 2,
     ..Spec::EMPTY
 };
@@ -66,9 +64,7 @@ const LEAST_OVER_FRICTION: f64 = 1.3;
 
 /// The limits that are tried first, as shares of the largest commanded torque. They are so close to each other that the coefficient
 /// of one of them is within [`CUT_OFF`] if the true limit is 0.2 to 0.97 of this torque.
-const LIMITS: [f64; 15] = [
-    0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.83, 0.86, 0.885, 0.91, 0.93, 0.95, 0.965,
-];
+const LIMITS: [f64; 15] = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.83, 0.86, 0.885, 0.91, 0.93, 0.95, 0.965];
 /// The limits that are tried first beside [`LIMITS`]: a position loop may command many times the torque that the drive can give.
 const WOUND_UP: [f64; 7] = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
 
@@ -101,9 +97,7 @@ impl EffectKind for TorqueSaturation {
     fn is_contradicted(&self, effect: &Effect, beside: &[Effect]) -> bool {
         let is_here = |other: &&Effect| other.joint() == effect.joint();
         let friction = beside.iter().filter(is_here);
-        let friction: f64 = friction
-            .filter_map(|other| other.kind().get().dry_friction(other))
-            .sum();
+        let friction: f64 = friction.filter_map(|other| other.kind().get().dry_friction(other)).sum();
         effect.number("limit") < LEAST_OVER_FRICTION * friction
     }
 

@@ -21,10 +21,7 @@ static SPEC: Spec = Spec {
     distinguished_by: BRAKE,
     formula: "F₊ forwards, −F₋ backwards",
     sentence: "Coulomb friction that depends on the direction, {positive} forwards and {negative} backwards",
-    parameters: &[
-        Parameter::new("positive", Quantity::Torque),
-        Parameter::new("negative", Quantity::Torque),
-    ],
+    parameters: &[Parameter::new("positive", Quantity::Torque), Parameter::new("negative", Quantity::Torque)],
     main: &["positive", "negative"],
     generalises: Some("coulomb_friction"),
     excludes: &["torque_offset", "spring"],

@@ -20,9 +20,7 @@ static SPEC: Spec = Spec {
     sentence: "Coulomb friction of {coulomb}, plus {gain} times the load torque",
     parameters: &[
         Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative),
-        Parameter::new("gain", Quantity::Ratio)
-            .within(Range::NotNegative)
-            .remarked("N m per N m of load"),
+        Parameter::new("gain", Quantity::Ratio).within(Range::NotNegative).remarked("N m per N m of load"),
     ],
     main: &["gain"],
     generalises: Some("coulomb_friction"),
@@ -81,11 +79,7 @@ impl EffectKind for LoadDependentFriction {
     /// If another dry friction of the joint states the Coulomb level, this one states only the part that grows with the
     /// load.
     fn sentence(&self, effect: &Effect) -> &'static str {
-        if effect.number("coulomb") == 0.0 {
-            "dry friction of {gain} times the load torque"
-        } else {
-            SPEC.sentence
-        }
+        if effect.number("coulomb") == 0.0 { "dry friction of {gain} times the load torque" } else { SPEC.sentence }
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
@@ -97,9 +91,7 @@ impl EffectKind for LoadDependentFriction {
 
 /// The mean of the absolute load.
 fn load(fitted: &dyn Fitted) -> f64 {
-    fitted
-        .column(1)
-        .map_or(0.0, |x| x.iter().map(|v| v.abs()).sum::<f64>() / x.len().max(1) as f64)
+    fitted.column(1).map_or(0.0, |x| x.iter().map(|v| v.abs()).sum::<f64>() / x.len().max(1) as f64)
 }
 
 #[cfg(test)]

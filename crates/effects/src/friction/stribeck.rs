@@ -26,10 +26,7 @@ static SPEC: Spec = Spec {
         Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative),
         Parameter::new("breakaway", Quantity::Torque).within(Range::NotNegative),
         Parameter::new("velocity", Quantity::Speed).within(Range::Positive),
-        Parameter::new("exponent", Quantity::Ratio)
-            .within(Range::Positive)
-            .or(2.0)
-            .remarked(""),
+        Parameter::new("exponent", Quantity::Ratio).within(Range::Positive).or(2.0).remarked(""),
     ],
     main: &["breakaway"],
     generalises: Some("coulomb_friction"),

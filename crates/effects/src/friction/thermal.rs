@@ -21,16 +21,12 @@ static SPEC: Spec = Spec {
     formula: "Coulomb friction × (1 + a e^(−(t − t₀)/T))",
     sentence: "Coulomb friction of {coulomb} on the warm drive, larger by {amplitude%} % at first, with a time constant of {time_constant}",
     parameters: &[
-        Parameter::new("coulomb", Quantity::Torque)
-            .within(Range::NotNegative)
-            .remarked("N m, when warm"),
+        Parameter::new("coulomb", Quantity::Torque).within(Range::NotNegative).remarked("N m, when warm"),
         Parameter::new("amplitude", Quantity::Ratio)
             .within(Range::AtLeastMinusOne)
             .remarked("of the warm level, at time t₀"),
         Parameter::new("time_constant", Quantity::Time).within(Range::Positive),
-        Parameter::new("start", Quantity::Time)
-            .or(0.0)
-            .remarked("s, t₀; 0 where the clock begins with the recordings"),
+        Parameter::new("start", Quantity::Time).or(0.0).remarked("s, t₀; 0 where the clock begins with the recordings"),
     ],
     main: &["amplitude"],
     generalises: Some("coulomb_friction"),
@@ -125,10 +121,7 @@ impl EffectKind for ThermalDrift {
         if start != 0.0 {
             estimate.start(start, 0.0);
         }
-        let effect = effect
-            .with("coulomb", coulomb)
-            .with("amplitude", amplitude)
-            .with("start", start);
+        let effect = effect.with("coulomb", coulomb).with("amplitude", amplitude).with("start", start);
         Some(effect.with("time_constant", time_constant))
     }
 

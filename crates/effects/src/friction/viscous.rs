@@ -51,10 +51,7 @@ impl EffectKind for ViscousFriction {
     }
 
     fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(
-            a.clone()
-                .with("coefficient", a.number("coefficient") + b.number("coefficient")),
-        )
+        Some(a.clone().with("coefficient", a.number("coefficient") + b.number("coefficient")))
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {

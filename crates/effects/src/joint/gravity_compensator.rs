@@ -143,9 +143,6 @@ mod tests {
         let effect = Effect::of(&GravityCompensator).on("a").with("amplitude", 8.0);
         let effect = effect.with("angle", 0.4);
         let columns = columns(0);
-        agree(
-            &effect,
-            &[(columns[0], 8.0 * 0.4_f64.cos()), (columns[1], -8.0 * 0.4_f64.sin())],
-        );
+        agree(&effect, &[(columns[0], 8.0 * 0.4_f64.cos()), (columns[1], -8.0 * 0.4_f64.sin())]);
     }
 }

@@ -20,9 +20,7 @@ static SPEC: Spec = Spec {
     parameters: &[
         Parameter::new("stiffness", Quantity::Stiffness),
         Parameter::new("rest", Quantity::Position),
-        Parameter::new("curve", Quantity::Torque)
-            .of(Shape::Points)
-            .remarked("rad, N m"),
+        Parameter::new("curve", Quantity::Torque).of(Shape::Points).remarked("rad, N m"),
     ],
     main: &["stiffness"],
     may_end: true,
@@ -82,11 +80,7 @@ impl EffectKind for Spring {
     }
 
     fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn {
-            turn: 2,
-            forms: |joint| vec![columns(joint, &[1])],
-            looked_for_with: 2,
-        })
+        Some(SetsIn { turn: 2, forms: |joint| vec![columns(joint, &[1])], looked_for_with: 2 })
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
@@ -96,11 +90,8 @@ impl EffectKind for Spring {
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
         let [low, high] = estimate.positions();
         let terms = estimate.terms();
-        let shape: Vec<(Term, Option<usize>)> = terms
-            .into_iter()
-            .enumerate()
-            .map(|(k, term)| (term.always(), estimate.place(k)))
-            .collect();
+        let shape: Vec<(Term, Option<usize>)> =
+            terms.into_iter().enumerate().map(|(k, term)| (term.always(), estimate.place(k))).collect();
         let torque = |draw: &[f64], q: f64| -> f64 {
             let drawn = |&(term, place): &(Term, Option<usize>)| (term, place.map_or(0.0, |place| draw[place]));
             torque(&shape.iter().map(drawn).collect::<Vec<_>>(), q)
@@ -121,10 +112,7 @@ impl EffectKind for Spring {
     }
 
     fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let pair = effect
-            .points("curve")
-            .windows(2)
-            .find(|pair| pair[1][0] <= pair[0][0])?;
+        let pair = effect.points("curve").windows(2).find(|pair| pair[1][0] <= pair[0][0])?;
         Some(("curve's next angle", pair[1][0], "larger than the one before"))
     }
 
@@ -188,9 +176,7 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
     let Some(x) = all().find(is_position).and_then(|k| fitted.column(k)) else {
         return false;
     };
-    let (low, high) = x
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    let (low, high) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let slope = |q: f64| -> f64 {
         all()
             .map(|k| {
@@ -204,27 +190,18 @@ fn stiffens(fitted: &dyn Fitted) -> bool {
             })
             .sum()
     };
-    let rising = (0..=SLOPES)
-        .filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(SLOPES)) > 0.0)
-        .count();
+    let rising = (0..=SLOPES).filter(|&k| slope(low + (high - low) * f64::from(k) / f64::from(SLOPES)) > 0.0).count();
     rising >= LEAST_RISING
 }
 
 /// Whether the joint can reach the angle without torque, by the straight line between the ends of the recorded range.
 fn rests_in_reach(fitted: &dyn Fitted) -> bool {
-    let terms: Vec<(Term, f64)> = (0..fitted.len())
-        .map(|k| (fitted.term(k).always(), fitted.value(k)))
-        .collect();
+    let terms: Vec<(Term, f64)> = (0..fitted.len()).map(|k| (fitted.term(k).always(), fitted.value(k))).collect();
     let is_straight = |(term, _): &(Term, f64)| term.is(&POSITION) && power(term) == 1;
     let (low, high) = match terms.iter().position(is_straight).and_then(|k| fitted.column(k)) {
         // A column is zero before its onset.
         Some(x) => range(x.iter().copied().filter(|&q| q != 0.0)),
-        None => range(
-            terms
-                .iter()
-                .filter(|(term, _)| term.is(&TENT))
-                .map(|(term, _)| term.sizes[0]),
-        ),
+        None => range(terms.iter().filter(|(term, _)| term.is(&TENT)).map(|(term, _)| term.sizes[0])),
     };
     let rising = torque(&terms, high) - torque(&terms, low);
     if !(high > low && rising != 0.0) {
@@ -241,9 +218,7 @@ fn rests_in_reach(fitted: &dyn Fitted) -> bool {
 
 /// The least and the largest of some numbers.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    })
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// The torque of a spring's terms with their coefficients at an angle (N m or N).

@@ -53,11 +53,7 @@ impl EffectKind for TorqueOffset {
     }
 
     fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn {
-            turn: 0,
-            forms: |joint| vec![vec![Term::on(&ONE, joint)]],
-            looked_for_with: 1,
-        })
+        Some(SetsIn { turn: 0, forms: |joint| vec![vec![Term::on(&ONE, joint)]], looked_for_with: 1 })
     }
 
     fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {

@@ -36,11 +36,7 @@ static SPEC: Spec = Spec {
     experiment: Some(KNOWN_LOAD),
     experiments_against: &[("inertial_scale", KNOWN_BODY), ("link_inertial_error", KNOWN_BODY)],
     // The rigid torque alone determines it, but it is a part of the joint's whole torque.
-    detectability: Detectability::Linear {
-        if_no_form: None,
-        is_of_first: false,
-        is_of_all_torque: true,
-    },
+    detectability: Detectability::Linear { if_no_form: None, is_of_first: false, is_of_all_torque: true },
     not_testable_turn: 10,
     ..Spec::EMPTY
 };
@@ -71,11 +67,7 @@ impl EffectKind for TorqueScale {
     }
 
     fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn {
-            turn: 1,
-            forms: |joint| vec![vec![Term::on(&RIGID, joint)]],
-            looked_for_with: 1,
-        })
+        Some(SetsIn { turn: 1, forms: |joint| vec![vec![Term::on(&RIGID, joint)]], looked_for_with: 1 })
     }
 
     fn is_possible(&self, fitted: &dyn Fitted) -> bool {
@@ -98,11 +90,7 @@ impl EffectKind for TorqueScale {
     }
 
     fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.factors.push(Scaled {
-            joint: at.joint,
-            factor: effect.number("factor"),
-            onset: effect.onset(),
-        });
+        machine.factors.push(Scaled { joint: at.joint, factor: effect.number("factor"), onset: effect.onset() });
     }
 }
 
@@ -143,11 +131,7 @@ mod tests {
             let column = Term::on(&RIGID, 0).since(onset).column(0, &motion).unwrap_or_default();
             for (tick, torque) in column.into_iter().enumerate() {
                 let whole = motion.rigid.tau[0][tick] + 3.0;
-                assert_eq!(
-                    torque,
-                    if motion.time(tick) < onset { 0.0 } else { whole },
-                    "at tick {tick}"
-                );
+                assert_eq!(torque, if motion.time(tick) < onset { 0.0 } else { whole }, "at tick {tick}");
             }
             let always = Term::on(&RIGID, 0).column(0, &motion);
             assert_eq!(always.as_ref(), Some(&motion.rigid.tau[0]));

@@ -6,11 +6,7 @@ use crate::{EffectKind, Form, Grounds, Law, Regressor, Size, Spec, Term, Turn};
 #[derive(Debug)]
 pub struct History;
 
-static SPEC: Spec = Spec {
-    name: "history",
-    depends_on: Some(Regressor::History),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec = Spec { name: "history", depends_on: Some(Regressor::History), ..Spec::UNMODELLED };
 
 /// The shortest time constant that is not attributed to friction (s). Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.
 const SHORTEST_MEMORY: f64 = 0.1;
@@ -35,11 +31,8 @@ static MEMORY: Law = Law {
 };
 
 /// The position of a drag link within its play (the size, rad or m), −1 to 1.
-static PLAY: Law = Law {
-    name: "play",
-    column: |term, joint, motion| Some(play(&motion.q[joint], term.sizes[0])),
-    ..Law::PLAIN
-};
+static PLAY: Law =
+    Law { name: "play", column: |term, joint, motion| Some(play(&motion.q[joint], term.sizes[0])), ..Law::PLAIN };
 
 impl EffectKind for History {
     fn spec(&self) -> &'static Spec {

@@ -6,11 +6,7 @@ use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
 #[derive(Debug)]
 pub struct Load;
 
-static SPEC: Spec = Spec {
-    name: "load",
-    depends_on: Some(Regressor::Load),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec = Spec { name: "load", depends_on: Some(Regressor::Load), ..Spec::UNMODELLED };
 
 /// τ |τ| of the rigid model over its scale. A dead band of the torque, sgn τ, is left out: it resembles a gap in a gear.
 static OWN_TORQUE: Law = Law {

@@ -6,11 +6,7 @@ use crate::{EffectKind, Form, Grounds, Regressor, Spec, Times, Turn};
 #[derive(Debug)]
 pub struct OtherPosition;
 
-static SPEC: Spec = Spec {
-    name: "other_position",
-    depends_on: Some(Regressor::OtherJoint),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec = Spec { name: "other_position", depends_on: Some(Regressor::OtherJoint), ..Spec::UNMODELLED };
 
 impl EffectKind for OtherPosition {
     fn spec(&self) -> &'static Spec {

@@ -6,11 +6,7 @@ use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
 #[derive(Debug)]
 pub struct OtherSpeed;
 
-static SPEC: Spec = Spec {
-    name: "other_speed",
-    depends_on: Some(Regressor::OtherJoint),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec = Spec { name: "other_speed", depends_on: Some(Regressor::OtherJoint), ..Spec::UNMODELLED };
 
 /// |v|, v², v |v| and v³, v being another joint's velocity over its largest.
 static OTHER_SPEED: Law = Law {

@@ -6,11 +6,7 @@ use crate::{EffectKind, Form, Grounds, Regressor, Spec, Times, Turn};
 #[derive(Debug)]
 pub struct OwnPosition;
 
-static SPEC: Spec = Spec {
-    name: "own_position",
-    depends_on: Some(Regressor::OwnPosition),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec = Spec { name: "own_position", depends_on: Some(Regressor::OwnPosition), ..Spec::UNMODELLED };
 
 impl EffectKind for OwnPosition {
     fn spec(&self) -> &'static Spec {

@@ -7,11 +7,7 @@ use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Times, Turn};
 #[derive(Debug)]
 pub struct Product;
 
-static SPEC: Spec = Spec {
-    name: "product",
-    depends_on: Some(Regressor::OwnPositionTimesSpeed),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec = Spec { name: "product", depends_on: Some(Regressor::OwnPositionTimesSpeed), ..Spec::UNMODELLED };
 
 /// q q̇, q sgn q̇, q² sgn q̇ and q² q̇, q being the position over its range.
 static PRODUCT: Law = Law {

@@ -7,12 +7,8 @@ use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
 #[derive(Debug)]
 pub struct Time;
 
-static SPEC: Spec = Spec {
-    name: "time",
-    may_be_in_one_recording: true,
-    depends_on: Some(Regressor::Time),
-    ..Spec::UNMODELLED
-};
+static SPEC: Spec =
+    Spec { name: "time", may_be_in_one_recording: true, depends_on: Some(Regressor::Time), ..Spec::UNMODELLED };
 
 /// A tent function of time; sizes are its centre and half its width (s).
 static MOMENT: Law = Law {

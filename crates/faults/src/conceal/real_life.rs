@@ -59,32 +59,18 @@ impl RealLife {
         }
         let mut joints: Vec<usize> = (0..names.len()).collect();
         joints.shuffle(random);
-        joints.truncate(if random.random_bool(0.5) {
-            random.random_range(1..3)
-        } else {
-            0
-        });
+        joints.truncate(if random.random_bool(0.5) { random.random_range(1..3) } else { 0 });
         let gearboxes = joints.into_iter().map(|j| gearbox(robot, j, random)).collect();
-        let mut days = || {
-            (0..names.len())
-                .map(|_| random.random_range(1.0 - FRICTION_SPREAD..1.0 + FRICTION_SPREAD))
-                .collect()
-        };
+        let mut days =
+            || (0..names.len()).map(|_| random.random_range(1.0 - FRICTION_SPREAD..1.0 + FRICTION_SPREAD)).collect();
         let friction = (0..=training.len()).map(|_| days()).collect();
         Self {
             small,
             gearboxes,
             friction,
-            noise_time: if random.random_bool(0.5) {
-                log_uniform(0.002, 0.03, random)
-            } else {
-                0.0
-            },
+            noise_time: if random.random_bool(0.5) { log_uniform(0.002, 0.03, random) } else { 0.0 },
             torque_quantum: match random.random_bool(0.5) {
-                true => spreads
-                    .iter()
-                    .map(|spread| spread * log_uniform(0.001, 0.02, random))
-                    .collect(),
+                true => spreads.iter().map(|spread| spread * log_uniform(0.001, 0.02, random)).collect(),
                 false => Vec::new(),
             },
             own_clocks: random.random_bool(1.0 / 3.0),
@@ -94,8 +80,7 @@ impl RealLife {
     /// The small effects of all joints, except where one of `effects` is the same on that joint.
     pub(super) fn beside<'a>(&'a self, effects: &'a [Injected]) -> impl Iterator<Item = Injected> + 'a {
         let all = self.small.iter().chain(&self.gearboxes);
-        all.filter(|small| !effects.iter().any(|effect| replaces(effect, small)))
-            .cloned()
+        all.filter(|small| !effects.iter().any(|effect| replaces(effect, small))).cloned()
     }
 
     /// The properties as an entry of the ground truth.
@@ -126,26 +111,16 @@ fn load(training: &[Reference], dof: usize, j: usize) -> f64 {
 /// The small effects of a joint.
 fn small_effects(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -> [Injected; 4] {
     let mut size = || log_uniform(SMALL_SHARES.0, SMALL_SHARES.1, random);
-    let [fading, half, gain, ripple] = [
-        size() * spread,
-        0.7 * size() * spread,
-        size() * spread / load.max(1e-12),
-        size() * spread,
-    ];
+    let [fading, half, gain, ripple] =
+        [size() * spread, 0.7 * size() * spread, size() * spread / load.max(1e-12), size() * spread];
     let on = |name: &str| Injected::new(name, Some(joint)).minor();
-    let (positive, negative) = if sign(random) > 0.0 {
-        (2.0 * half, 0.0)
-    } else {
-        (0.0, 2.0 * half)
-    };
+    let (positive, negative) = if sign(random) > 0.0 { (2.0 * half, 0.0) } else { (0.0, 2.0 * half) };
     [
         on("stribeck_friction")
             .with("coulomb", 0.0)
             .with("breakaway", fading)
             .with("velocity", random.random_range(0.05..0.3)),
-        on("friction_asymmetry")
-            .with("positive", positive)
-            .with("negative", negative),
+        on("friction_asymmetry").with("positive", positive).with("negative", negative),
         on("load_dependent_friction").with("coulomb", 0.0).with("gain", gain),
         on("torque_ripple")
             .with("amplitude", ripple)

@@ -143,11 +143,7 @@ fn draw_all(
         let Some(fault) = known else { return Ok(None) };
         let joints = stage.robot.arm().joints();
         let used: Vec<usize> = (0..joints.len())
-            .filter(|&j| {
-                effects
-                    .iter()
-                    .any(|effect| effect.joint.as_deref() == Some(&joints[j].name))
-            })
+            .filter(|&j| effects.iter().any(|effect| effect.joint.as_deref() == Some(&joints[j].name)))
             .collect();
         let mut found = None;
         for _ in 0..DRAWS {
@@ -236,10 +232,7 @@ fn may_succeed_with_another_draw(error: &FaultError) -> bool {
 
 /// Whether the loop does not oscillate.
 fn is_stable(stage: &Stage<'_>, effects: &[Injected], run: &Run, base: f64) -> bool {
-    let may_oscillate = effects
-        .iter()
-        .filter_map(Injected::fault)
-        .any(|fault| fault.may_oscillate);
+    let may_oscillate = effects.iter().filter_map(Injected::fault).any(|fault| fault.may_oscillate);
     let most = if may_oscillate { OSCILLATION.1 } else { OSCILLATION.0 };
     stage.torques(run).1 <= most + base
 }

@@ -73,9 +73,7 @@ impl<'a> Stage<'a> {
         let Kind { seed, hard, .. } = kind;
         let n = robot.arm().dof();
         let mut motion = random(seed, Stream::Motion);
-        let training: Vec<Reference> = (0..kind.training)
-            .map(|k| excitation(robot, start(k), &mut motion))
-            .collect();
+        let training: Vec<Reference> = (0..kind.training).map(|k| excitation(robot, start(k), &mut motion)).collect();
         let held_out = pick_and_place(robot, start(training.len()), &mut motion);
         let spreads: Vec<f64> = (0..n).map(|j| spread(robot, &training, j, true)).collect();
         let loads = (0..n).map(|j| spread(robot, &training, j, false)).collect();
@@ -89,18 +87,11 @@ impl<'a> Stage<'a> {
             robot,
             friction: kind.friction.then_some((levels, exponent)),
             sensors: Sensors {
-                ticks: if hard {
-                    HARD_TICKS.choose(&mut sensors).copied().unwrap_or(4)
-                } else {
-                    4
-                },
+                ticks: if hard { HARD_TICKS.choose(&mut sensors).copied().unwrap_or(4) } else { 4 },
                 jitter: hard,
                 lost: hard,
                 quantum: [1e-5, 2e-5, 2e-5, 5e-5].choose(&mut sensors).copied().unwrap_or(2e-5),
-                noise: spreads
-                    .iter()
-                    .map(|s| s * noise * sensors.random_range(0.92..1.08))
-                    .collect(),
+                noise: spreads.iter().map(|s| s * noise * sensors.random_range(0.92..1.08)).collect(),
                 noise_time: real.as_ref().map_or(0.0, |real| real.noise_time),
                 torque_quantum: real.as_ref().map_or_else(Vec::new, |real| real.torque_quantum.clone()),
                 own_clocks: real.as_ref().is_some_and(|real| real.own_clocks),
@@ -213,9 +204,8 @@ impl<'a> Stage<'a> {
     /// Runs of all recordings, the last one held out; and the torques of the training recordings.
     pub(crate) fn run_all(&self, effects: &[Injected]) -> Result<(Vec<Run>, Vec<Torques>), FaultError> {
         let references = self.training.iter().chain([&self.held_out]);
-        let runs: Vec<Run> = references
-            .map(|reference| self.run(effects, None, reference))
-            .collect::<Result<_, _>>()?;
+        let runs: Vec<Run> =
+            references.map(|reference| self.run(effects, None, reference)).collect::<Result<_, _>>()?;
         let training = &runs[..self.training.len()];
         let torques = training.iter().map(|run| self.torques(run).0).collect();
         Ok((runs, torques))
@@ -295,9 +285,7 @@ fn depends_on_time(effect: &Injected) -> bool {
 fn body_of(tool: &Injected) -> Inertia {
     let list = |name: &str| -> Vec<f64> {
         let values = tool.parameters.get(name).and_then(serde_json::Value::as_array);
-        values.map_or_else(Vec::new, |values| {
-            values.iter().filter_map(serde_json::Value::as_f64).collect()
-        })
+        values.map_or_else(Vec::new, |values| values.iter().filter_map(serde_json::Value::as_f64).collect())
     };
     let at = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
     let (com, moments) = (list("com"), list("inertia"));
@@ -311,10 +299,7 @@ fn body_of(tool: &Injected) -> Inertia {
 
 /// The nominal standard deviation of the torque of joint `j` along motions, with or without its drive.
 fn spread(robot: &Robot, motions: &[Reference], j: usize, with_drive: bool) -> f64 {
-    let (n, rotor) = (
-        robot.arm().dof(),
-        if with_drive { robot.rotor_inertias()[j] } else { 0.0 },
-    );
+    let (n, rotor) = (robot.arm().dof(), if with_drive { robot.rotor_inertias()[j] } else { 0.0 });
     let torque = |motion: &Reference| -> Vec<f64> {
         let of_joint = motion.ff.iter().zip(&motion.qdd).skip(j).step_by(n);
         of_joint.map(|(ff, qdd)| ff + rotor * qdd).collect()

@@ -29,47 +29,24 @@ fn a_case_is_the_same_every_time() {
     assert_eq!((first.train.len(), first.truth.case.as_str()), (2, "case_007"));
 
     // Baseline friction is on every joint, without a share; the drawn effects are present, with shares within bounds.
-    let baseline = first
-        .truth
-        .injected
-        .iter()
-        .filter(|effect| effect.expressed_share.is_none());
+    let baseline = first.truth.injected.iter().filter(|effect| effect.expressed_share.is_none());
     assert_eq!(baseline.count(), 14);
-    let effect = first
-        .truth
-        .injected
-        .iter()
-        .find(|effect| effect.effect == "torque_offset");
+    let effect = first.truth.injected.iter().find(|effect| effect.effect == "torque_offset");
     let share = effect.and_then(|effect| effect.expressed_share).expect("it is there");
     assert!((0.01..1.2).contains(&share), "{share}");
     // One clock for the whole case: recordings of 25 s, 5 s apart.
-    let starts: Vec<f64> = first
-        .train
-        .iter()
-        .chain([&first.held_out])
-        .map(|run| run.time[0].round())
-        .collect();
+    let starts: Vec<f64> = first.train.iter().chain([&first.held_out]).map(|run| run.time[0].round()).collect();
     assert_eq!(starts, [0.0, 30.0, 60.0]);
 }
 
 #[test]
 fn the_truth_contains_the_given_effects() {
-    let mut payload = Injected::new("payload", None)
-        .with("mass", 1.0)
-        .with("com", serde_json::json!([0.0, 0.0, 0.1]));
+    let mut payload = Injected::new("payload", None).with("mass", 1.0).with("com", serde_json::json!([0.0, 0.0, 0.1]));
     payload.onset = Some(12.0);
-    let settings = Settings {
-        training: 1,
-        rate: 100,
-        ..Settings::default()
-    };
+    let settings = Settings { training: 1, rate: 100, ..Settings::default() };
     let made = conceal_effects(&puma(), "one", &[payload.clone()], &settings).expect("it can be");
     let (drives, given) = made.truth.injected.split_at(6);
-    assert!(
-        drives
-            .iter()
-            .all(|effect| effect.effect == "rotor_inertia" && effect.expressed_share.is_none())
-    );
+    assert!(drives.iter().all(|effect| effect.effect == "rotor_inertia" && effect.expressed_share.is_none()));
     let share = given[0].expressed_share.expect("it was run without");
     assert!(share > 0.1, "{share}");
     payload.expressed_share = given[0].expressed_share;
@@ -90,39 +67,17 @@ fn impossible_effects_are_refused() {
         error.to_string()
     };
     let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
-    has(
-        refuse(Injected::new("sprung", Some("axis1"))),
-        "did you mean \"spring\"",
-    );
-    has(
-        refuse(Injected::new("spring", Some("axis9")).with("stiffness", 1.0)),
-        "did you mean",
-    );
-    has(
-        refuse(Injected::new("spring", Some("axis1")).with("rest", 1.0)),
-        "add stiffness",
-    );
+    has(refuse(Injected::new("sprung", Some("axis1"))), "did you mean \"spring\"");
+    has(refuse(Injected::new("spring", Some("axis9")).with("stiffness", 1.0)), "did you mean");
+    has(refuse(Injected::new("spring", Some("axis1")).with("rest", 1.0)), "add stiffness");
     has(refuse(Injected::new("spring", None)), "the joint is missing");
-    let spring = Injected::new("spring", Some("axis1"))
-        .with("stiffness", 1.0)
-        .with("rest", 1.0);
+    let spring = Injected::new("spring", Some("axis1")).with("stiffness", 1.0).with("rest", 1.0);
     has(refuse(spring.formed("air spring")), "gas spring, hardening, knee");
     let offset = Injected::new("torque_offset", Some("axis1")).with("offset", 1.0);
     has(refuse(offset.formed("round")), "one only");
-    has(
-        refuse(Injected::new("actuation_delay", Some("axis1")).with("delay", 2.0)),
-        "delay",
-    );
-    let rate = Settings {
-        rate: 300,
-        ..Settings::default()
-    };
-    has(
-        conceal_effects(&robot, "no", &[], &rate)
-            .expect_err("it is refused")
-            .to_string(),
-        "500",
-    );
+    has(refuse(Injected::new("actuation_delay", Some("axis1")).with("delay", 2.0)), "delay");
+    let rate = Settings { rate: 300, ..Settings::default() };
+    has(conceal_effects(&robot, "no", &[], &rate).expect_err("it is refused").to_string(), "500");
 }
 
 /// A case is written to its folder, its truth elsewhere, and neither is ever overwritten.
@@ -141,14 +96,9 @@ fn cases_are_written_once() {
     files.sort();
     assert_eq!(files, ["held_out.csv", "robot.urdf", "train_1.csv", "train_2.csv"]);
     let read = Recording::read(&case.join("train_2.csv")).expect("it is a recording");
-    assert_eq!(
-        (read.time, read.tau),
-        (made.train[1].time.clone(), made.train[1].tau.clone())
-    );
+    assert_eq!((read.time, read.tau), (made.train[1].time.clone(), made.train[1].tau.clone()));
     assert!(truths.join("case_007.json").is_file());
-    let error = crate::write_case(&made, folder.path(), &truths)
-        .expect_err("it is refused")
-        .to_string();
+    let error = crate::write_case(&made, folder.path(), &truths).expect_err("it is refused").to_string();
     assert!(error.contains("nothing is overwritten"), "{error}");
 }
 
@@ -158,39 +108,20 @@ fn cases_are_written_once() {
 fn the_truth_of_a_lifelike_case_is_complete() {
     let robot = seven_axis();
     let n = robot.arm().dof();
-    let plan = CasePlan {
-        lifelike: true,
-        urdf_error: 0.1,
-        ..plan(false, &["quadratic_drag"])
-    };
+    let plan = CasePlan { lifelike: true, urdf_error: 0.1, ..plan(false, &["quadratic_drag"]) };
     let made = conceal_case(&robot, &plan).expect("it comes out");
     let truth = &made.truth;
     assert_eq!(truth.urdf_sigma, Some(0.1));
     let real = truth.lifelike.as_ref().expect("it is one");
     assert_eq!((real.friction.len(), real.friction[0].len()), (4, n));
     assert!(real.friction.iter().flatten().all(|factor| (factor - 1.0).abs() <= 0.1));
-    for name in [
-        "stribeck_friction",
-        "friction_asymmetry",
-        "load_dependent_friction",
-        "torque_ripple",
-        "torque_scale",
-    ] {
-        let small = truth
-            .injected
-            .iter()
-            .filter(|effect| effect.minor && effect.effect == name);
+    for name in ["stribeck_friction", "friction_asymmetry", "load_dependent_friction", "torque_ripple", "torque_scale"]
+    {
+        let small = truth.injected.iter().filter(|effect| effect.minor && effect.effect == name);
         assert_eq!(small.count(), n, "{name}");
     }
-    let asked: Vec<&Injected> = truth
-        .injected
-        .iter()
-        .filter(|effect| effect.expressed_share.is_some())
-        .collect();
-    assert_eq!(
-        (asked.len(), asked[0].effect.as_str(), asked[0].minor),
-        (1, "quadratic_drag", false)
-    );
+    let asked: Vec<&Injected> = truth.injected.iter().filter(|effect| effect.expressed_share.is_some()).collect();
+    assert_eq!((asked.len(), asked[0].effect.as_str(), asked[0].minor), (1, "quadratic_drag", false));
     let text = serde_json::to_string(truth).expect("it is JSON");
     assert_eq!(&serde_json::from_str::<Truth>(&text).expect("it is a truth"), truth);
     let believed = Arm::from_urdf_text(&made.urdf, "case").expect("it is an arm");
@@ -200,10 +131,7 @@ fn the_truth_of_a_lifelike_case_is_complete() {
     let all: Vec<&Injected> = truth.injected.iter().collect();
     assert!(Machine::new(&robot, &all, None).is_ok());
     // The machine is the true one, whatever errors the URDF has.
-    let exact = CasePlan {
-        urdf_error: 0.0,
-        ..plan
-    };
+    let exact = CasePlan { urdf_error: 0.0, ..plan };
     let exact = conceal_case(&robot, &exact).expect("it comes out");
     assert_eq!((exact.train, exact.urdf.as_str()), (made.train, robot.urdf()));
 }
@@ -213,31 +141,16 @@ fn the_truth_of_a_lifelike_case_is_complete() {
 #[test]
 fn small_effects_are_small() {
     let robot = puma();
-    let kind = Kind {
-        seed: 5,
-        hard: false,
-        training: 1,
-        friction: true,
-        lifelike: true,
-        urdf_error: 0.0,
-    };
+    let kind = Kind { seed: 5, hard: false, training: 1, friction: true, lifelike: true, urdf_error: 0.0 };
     let mut stage = Stage::new(&robot, kind).expect("it can be");
     let small = stage.real.take().expect("it is one").small;
     let mut torques = |small: Vec<Injected>| {
-        stage.real = Some(RealLife {
-            small,
-            ..RealLife::default()
-        });
+        stage.real = Some(RealLife { small, ..RealLife::default() });
         let run = stage.run(&[], None, &stage.training[0]).expect("it runs");
         [stage.torques(&run).0]
     };
     let bare = torques(Vec::new());
-    for name in [
-        "stribeck_friction",
-        "friction_asymmetry",
-        "load_dependent_friction",
-        "torque_ripple",
-    ] {
+    for name in ["stribeck_friction", "friction_asymmetry", "load_dependent_friction", "torque_ripple"] {
         let of_the_kind: Vec<Injected> = small.iter().filter(|effect| effect.effect == name).cloned().collect();
         assert!(of_the_kind.len() == 6 && of_the_kind.iter().all(|effect| effect.minor));
         let share = crate::expressed_share::share(&torques(of_the_kind), &bare, true);
@@ -250,13 +163,8 @@ fn small_effects_are_small() {
 #[test]
 fn a_tool_that_is_not_mounted_is_only_in_the_urdf() {
     let robot = puma();
-    let tool = Injected::new("payload", None)
-        .with("mass", -0.7)
-        .with("com", serde_json::json!([0.0, 0.0, 0.1]));
-    let settings = Settings {
-        training: 1,
-        ..Settings::default()
-    };
+    let tool = Injected::new("payload", None).with("mass", -0.7).with("com", serde_json::json!([0.0, 0.0, 0.1]));
+    let settings = Settings { training: 1, ..Settings::default() };
     let record = |effects: &[Injected]| conceal_effects(&robot, "one", effects, &settings).expect("it can be");
     let (with, without) = (record(std::slice::from_ref(&tool)), record(&[]));
     assert_eq!(with.train, without.train);

@@ -12,11 +12,7 @@ pub(super) const FAULT: Fault = Fault {
     similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let own = at.rotor_inertia();
-        let rotor = if own > 0.0 {
-            own
-        } else {
-            at.link_inertia() * random.random_range(0.4..1.0)
-        };
+        let rotor = if own > 0.0 { own } else { at.link_inertia() * random.random_range(0.4..1.0) };
         let round = at.hard && random.random_bool(0.6);
         let bare = if round { bare.formed("rounded") } else { bare };
         let halfgaps = if at.hard { 0.002..0.008 } else { 0.004..0.014 };
@@ -26,14 +22,8 @@ pub(super) const FAULT: Fault = Fault {
         let round = reader.form()? == 1;
         elastic(reader, |more_rotor| {
             Ok(Connection {
-                stiffness: reader
-                    .has("stiffness")
-                    .then(|| reader.number_above("stiffness", 0.0))
-                    .transpose()?,
-                damping: reader
-                    .has("damping")
-                    .then(|| reader.at_least_zero("damping"))
-                    .transpose()?,
+                stiffness: reader.has("stiffness").then(|| reader.number_above("stiffness", 0.0)).transpose()?,
+                damping: reader.has("damping").then(|| reader.at_least_zero("damping")).transpose()?,
                 halfgap: reader.at_least_zero("halfgap")?,
                 more_rotor,
                 hardening: f64::INFINITY,

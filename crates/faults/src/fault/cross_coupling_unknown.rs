@@ -22,27 +22,12 @@ pub(super) const FAULT: Fault = Fault {
         let (amplitude, other) = (reader.number("amplitude")?, reader.other()?);
         let (rate, phase) = (reader.number("rate")?, reader.number("phase")?);
         match reader.form()? {
-            0 => reader.on_link(Wave {
-                amplitude,
-                other,
-                rate,
-                phase,
-            }),
-            _ => reader.on_link(Step {
-                amplitude,
-                other,
-                rate,
-                center: phase,
-            }),
+            0 => reader.on_link(Wave { amplitude, other, rate, phase }),
+            _ => reader.on_link(Step { amplitude, other, rate, center: phase }),
         }
     },
     #[cfg(test)]
-    example: |bare| {
-        bare.with("amplitude", 2.0)
-            .with("rate", 4.0)
-            .with("phase", 0.3)
-            .with("other", "axis5")
-    },
+    example: |bare| bare.with("amplitude", 2.0).with("rate", 4.0).with("phase", 0.3).with("other", "axis5"),
     ..Fault::OUTSIDE_THE_CATALOGUE
 };
 

@@ -39,10 +39,6 @@ pub(super) const FAULT: Fault = Fault {
         Ok(vec![Property::Contact(contact).into()])
     },
     #[cfg(test)]
-    example: |bare| {
-        bare.with("start", 1.0)
-            .with("duration", 1.0)
-            .with("force", json!([10.0, -15.0, 20.0]))
-    },
+    example: |bare| bare.with("start", 1.0).with("duration", 1.0).with("force", json!([10.0, -15.0, 20.0])),
     ..Fault::ON_THE_ARM
 };

@@ -29,10 +29,7 @@ pub(super) const FAULT: Fault = Fault {
         let joint = reader.joint()?;
         let (positive, negative) = (reader.at_least_zero("positive")?, reader.at_least_zero("negative")?);
         let tilt = Tilt(0.5 * (positive - negative));
-        Ok(vec![
-            Level(0.5 * (positive + negative)).below_a_curve(joint),
-            Property::Dry(joint, Box::new(tilt)).into(),
-        ])
+        Ok(vec![Level(0.5 * (positive + negative)).below_a_curve(joint), Property::Dry(joint, Box::new(tilt)).into()])
     },
     #[cfg(test)]
     example: |bare| bare.with("positive", 2.0).with("negative", 1.0),

@@ -7,8 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     draw: |bare, at, random| {
         let (sin, cos) = random.random_range(0.0..TAU).sin_cos();
         let angles = if at.hard { 0.01..0.05 } else { 0.02..0.12 };
-        bare.with("angle", random.random_range(angles))
-            .with("axis", json!([cos, sin, 0.0]))
+        bare.with("angle", random.random_range(angles)).with("axis", json!([cos, sin, 0.0]))
     },
     read: |reader| {
         let axis = Vector3::from(reader.numbers("axis")?);

@@ -18,9 +18,7 @@ pub(super) const FAULT: Fault = Fault {
         let shift = [shift(), shift(), shift()];
         let mut stretch = || log_uniform(0.8, 1.25, random);
         let stretch = [stretch(), stretch(), stretch()];
-        bare.formed("moved")
-            .with("shift", json!(shift))
-            .with("stretch", json!(stretch))
+        bare.formed("moved").with("shift", json!(shift)).with("stretch", json!(stretch))
     },
     read: |reader| {
         let (joint, factor) = (reader.joint()?, 1.0 + reader.number_above("relative", -1.0)?);
@@ -38,9 +36,7 @@ pub(super) const FAULT: Fault = Fault {
     },
     #[cfg(test)]
     example: |bare| {
-        bare.with("relative", 0.3)
-            .with("shift", json!([0.02, -0.01, 0.03]))
-            .with("stretch", json!([1.2, 0.9, 1.1]))
+        bare.with("relative", 0.3).with("shift", json!([0.02, -0.01, 0.03])).with("stretch", json!([1.2, 0.9, 1.1]))
     },
     ..Fault::ON_A_JOINT
 };

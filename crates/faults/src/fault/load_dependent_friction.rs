@@ -12,8 +12,7 @@ pub(super) const FAULT: Fault = Fault {
     draw: |bare, at, random| {
         let (coulomb, form) = at.dry_friction(random);
         let bare = if form == 1 { bare.formed("drive load") } else { bare };
-        bare.with("coulomb", coulomb)
-            .with("gain", random.random_range(0.06..0.2))
+        bare.with("coulomb", coulomb).with("gain", random.random_range(0.06..0.2))
     },
     size: Size::Changed(|injected, factor| {
         let gain = injected.number("gain").unwrap_or(0.0);
@@ -21,10 +20,7 @@ pub(super) const FAULT: Fault = Fault {
     }),
     read: |reader| {
         let joint = reader.joint()?;
-        let loaded = Loaded {
-            of: [Load::Rigid, Load::Drive][reader.form()?],
-            gain: reader.at_least_zero("gain")?,
-        };
+        let loaded = Loaded { of: [Load::Rigid, Load::Drive][reader.form()?], gain: reader.at_least_zero("gain")? };
         Ok(vec![
             Level(reader.at_least_zero("coulomb")?).below_a_curve(joint),
             Property::Dry(joint, Box::new(loaded)).into(),

@@ -17,15 +17,8 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         let (amplitude, phase) = (reader.number("amplitude")?, reader.number("phase")?);
         match reader.form()? {
-            0 => reader.on_link(VelocityWave {
-                amplitude,
-                rate: reader.number("rate")?,
-                phase,
-            }),
-            _ => reader.on_link(SpeedPosition {
-                amplitude,
-                center: phase,
-            }),
+            0 => reader.on_link(VelocityWave { amplitude, rate: reader.number("rate")?, phase }),
+            _ => reader.on_link(SpeedPosition { amplitude, center: phase }),
         }
     },
     #[cfg(test)]

@@ -11,12 +11,9 @@ pub(super) const FAULT: Fault = Fault {
         let bare = match random.random_range(0..3) {
             0 => bare,
             1 => bare.formed("square"),
-            _ => bare
-                .formed("saturating")
-                .with("velocity", random.random_range(0.1..0.3)),
+            _ => bare.formed("saturating").with("velocity", random.random_range(0.1..0.3)),
         };
-        bare.with("amplitude", at.spread() * random.random_range(0.15..0.5))
-            .with("other", other)
+        bare.with("amplitude", at.spread() * random.random_range(0.15..0.5)).with("other", other)
     },
     read: |reader| {
         reader.on_link(OtherVelocity {

@@ -11,22 +11,13 @@ pub(super) const FAULT: Fault = Fault {
         let com = [across(), across(), random.random_range(0.03..0.16)];
         let moment = 0.4 * mass * 0.04 * 0.04;
         // A tool that is drawn in the URDF and not mounted is a negative payload.
-        let sign = if at.lifelike && random.random_bool(0.5) {
-            -1.0
-        } else {
-            1.0
-        };
-        bare.with("mass", sign * mass).with("com", json!(com)).with(
-            "inertia",
-            json!([moment, 0.0, moment, 0.0, 0.0, moment].map(|moment| sign * moment)),
-        )
+        let sign = if at.lifelike && random.random_bool(0.5) { -1.0 } else { 1.0 };
+        bare.with("mass", sign * mass)
+            .with("com", json!(com))
+            .with("inertia", json!([moment, 0.0, moment, 0.0, 0.0, moment].map(|moment| sign * moment)))
     },
     read: |reader| {
-        let inertia = if reader.has("inertia") {
-            reader.numbers("inertia")?
-        } else {
-            [0.0; 6]
-        };
+        let inertia = if reader.has("inertia") { reader.numbers("inertia")? } else { [0.0; 6] };
         let [xx, xy, yy, xz, yz, zz] = inertia;
         let mass = reader.number("mass")?;
         let sign = if mass < 0.0 { -1.0 } else { 1.0 };

@@ -12,11 +12,7 @@ pub(super) const FAULT: Fault = Fault {
         let coefficient = at.spread() * random.random_range(0.1..0.6);
         let exponent = *[1.7, 2.3, 2.7].choose(random).unwrap_or(&1.7);
         let drag = bare.with("coefficient", coefficient);
-        if at.hard {
-            drag.formed("power").with("exponent", exponent)
-        } else {
-            drag
-        }
+        if at.hard { drag.formed("power").with("exponent", exponent) } else { drag }
     },
     size: Size::Times(&["coefficient"]),
     read: |reader| {

@@ -13,10 +13,7 @@ pub(super) const FAULT: Fault = Fault {
     read: |reader| {
         reader.on_link(Walk {
             amplitude: reader.number("amplitude")?,
-            values: walk(
-                reader.number_above("time_constant", 0.0)?,
-                reader.number("seed")? as u64,
-            ),
+            values: walk(reader.number_above("time_constant", 0.0)?, reader.number("seed")? as u64),
         })
     },
     #[cfg(test)]

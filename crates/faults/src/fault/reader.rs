@@ -26,14 +26,8 @@ pub(crate) fn parts(injected: &Injected, arm: &Arm, whole: bool) -> Result<Vec<P
         Presence::Always => true,
         Presence::Without => !whole,
     };
-    let part = |Piece { what, there }| Part {
-        onset: if there == Presence::With {
-            onset
-        } else {
-            f64::NEG_INFINITY
-        },
-        what,
-    };
+    let part =
+        |Piece { what, there }| Part { onset: if there == Presence::With { onset } else { f64::NEG_INFINITY }, what };
     Ok(pieces.filter(is_there).map(part).collect())
 }
 
@@ -85,10 +79,7 @@ impl Reader<'_> {
             let known: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
             let hint =
                 recording::nearest(name, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
-            self.fail(format!(
-                "there is no joint \"{name}\"; {hint}the robot has {}",
-                known.join(", ")
-            ))
+            self.fail(format!("there is no joint \"{name}\"; {hint}the robot has {}", known.join(", ")))
         })
     }
 
@@ -170,9 +161,9 @@ impl Reader<'_> {
         let known = Fault::named(&self.injected.effect).map_or(&[][..], |fault| fault.forms);
         match known.iter().position(|name| name == form) {
             Some(place) => Ok(place + 1),
-            None if known.is_empty() => Err(self.fail(format!(
-                "it has no form \"{form}\": it has one only; leave the line out"
-            ))),
+            None if known.is_empty() => {
+                Err(self.fail(format!("it has no form \"{form}\": it has one only; leave the line out")))
+            }
             None => Err(self.fail(format!("it has no form \"{form}\"; there are {}", known.join(", ")))),
         }
     }

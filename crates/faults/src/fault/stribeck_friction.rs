@@ -9,11 +9,7 @@ pub(super) const FAULT: Fault = Fault {
     leaves: Leaves::DryFriction,
     draw: |bare, at, random| {
         let (coulomb, _) = at.dry_friction(random);
-        let exponent = if at.hard {
-            *[0.7, 1.0, 1.5, 3.0].choose(random).unwrap_or(&1.0)
-        } else {
-            2.0
-        };
+        let exponent = if at.hard { *[0.7, 1.0, 1.5, 3.0].choose(random).unwrap_or(&1.0) } else { 2.0 };
         let bare = if at.hard { bare.formed("another exponent") } else { bare };
         bare.with("coulomb", coulomb)
             .with("breakaway", coulomb * random.random_range(1.4..2.4))
@@ -32,10 +28,7 @@ pub(super) const FAULT: Fault = Fault {
             extra: reader.at_least_zero("breakaway")? - coulomb,
             exponent: reader.number_or("exponent", 2.0)?,
         };
-        Ok(vec![
-            Level(coulomb).below_a_curve(joint),
-            Property::Dry(joint, Box::new(fading)).into(),
-        ])
+        Ok(vec![Level(coulomb).below_a_curve(joint), Property::Dry(joint, Box::new(fading)).into()])
     },
     #[cfg(test)]
     example: |bare| bare.with("coulomb", 1.0).with("breakaway", 3.0).with("velocity", 0.2),

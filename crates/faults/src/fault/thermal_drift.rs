@@ -36,11 +36,7 @@ pub(super) const FAULT: Fault = Fault {
         ])
     },
     #[cfg(test)]
-    example: |bare| {
-        bare.with("coulomb", 1.0)
-            .with("amplitude", 1.0)
-            .with("time_constant", 30.0)
-    },
+    example: |bare| bare.with("coulomb", 1.0).with("amplitude", 1.0).with("time_constant", 30.0),
     ..Fault::ON_A_JOINT
 };
 

@@ -36,11 +36,6 @@ struct Periodic {
 impl LinkLaw for Periodic {
     fn torque(&self, at: At<'_>, _: &mut f64, _: f64) -> f64 {
         let wave = (TAU * self.hertz * at.time + self.phase).sin();
-        self.amplitude
-            * if self.edge > 0.0 {
-                (self.edge * wave).tanh()
-            } else {
-                wave
-            }
+        self.amplitude * if self.edge > 0.0 { (self.edge * wave).tanh() } else { wave }
     }
 }

@@ -13,11 +13,7 @@ pub(super) const FAULT: Fault = Fault {
             .with("amplitude", at.spread() * random.random_range(0.05..0.3))
             .with("periods", f64::from(random.random_range(14_u8..41)))
             .with("phase", random.random_range(0.0..TAU));
-        if at.hard {
-            ripple.formed("second harmonic").with("second", second)
-        } else {
-            ripple
-        }
+        if at.hard { ripple.formed("second harmonic").with("second", second) } else { ripple }
     },
     size: Size::Times(&["amplitude"]),
     read: |reader| {

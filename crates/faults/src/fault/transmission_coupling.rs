@@ -25,12 +25,7 @@ pub(super) const FAULT: Fault = Fault {
         let (viscous, coulomb) = (reader.number("viscous")?, reader.number_or("coulomb", 0.0)?);
         let sense = reader.number_or("sense", 1.0)?;
         let half = |joint, other| {
-            let law = Coupling {
-                other,
-                viscous,
-                coulomb,
-                sense,
-            };
+            let law = Coupling { other, viscous, coulomb, sense };
             Property::Link(joint, Box::new(law)).into()
         };
         let inertia = Property::CouplingInertia(joint, other, reader.number_or("inertia", 0.0)?);

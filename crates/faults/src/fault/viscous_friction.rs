@@ -31,11 +31,7 @@ pub(super) struct Power {
 
 impl DriveLaw for Power {
     fn torque(&self, _: f64, v: f64) -> f64 {
-        let size = if self.exponent == 1.0 {
-            v.abs()
-        } else {
-            v.abs().powf(self.exponent)
-        };
+        let size = if self.exponent == 1.0 { v.abs() } else { v.abs().powf(self.exponent) };
         self.coefficient * v.signum() * size
     }
 }

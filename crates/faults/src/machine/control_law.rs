@@ -52,10 +52,7 @@ pub(super) struct PositionLoop<'a> {
 impl<'a> PositionLoop<'a> {
     pub(super) fn new(reference: &'a Reference, robot: &Robot, parts: &Parts) -> Self {
         let joints = 0..robot.arm().dof();
-        Self {
-            reference,
-            gains: joints.map(|j| gains(robot, j, parts.more_rotor(j))).collect(),
-        }
+        Self { reference, gains: joints.map(|j| gains(robot, j, parts.more_rotor(j))).collect() }
     }
 }
 

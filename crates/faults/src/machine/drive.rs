@@ -25,10 +25,7 @@ pub struct VelocityFilter {
 impl VelocityFilter {
     /// At rest at `position`.
     pub fn new(position: f64) -> Self {
-        Self {
-            position,
-            velocity: 0.0,
-        }
+        Self { position, velocity: 0.0 }
     }
 
     /// Updates the filter with the encoder's position one tick of 1 ms later.
@@ -52,20 +49,11 @@ pub(super) struct Drive {
 impl Drive {
     /// At rest at `position` under the torque `holding`.
     pub(super) fn new(position: f64, holding: f64) -> Self {
-        Self {
-            sensed: VelocityFilter::new(position),
-            commands: [holding; STORED_COMMANDS],
-            next: 0,
-            lagging: holding,
-        }
+        Self { sensed: VelocityFilter::new(position), commands: [holding; STORED_COMMANDS], next: 0, lagging: holding }
     }
 
     pub(super) fn read_encoder(&mut self, position: f64, quantum: f64) {
-        let read = if quantum > 0.0 {
-            (position / quantum).round() * quantum
-        } else {
-            position
-        };
+        let read = if quantum > 0.0 { (position / quantum).round() * quantum } else { position };
         self.sensed.take(read);
     }
 
@@ -117,18 +105,9 @@ pub(super) struct Rotor {
 impl Rotor {
     /// A rotor of `inertia` that moves with its link, whose inertia is `link` (kg m²), at `position` and `velocity`.
     pub(super) fn new(connection: Connection, inertia: f64, link: f64, position: f64, velocity: f64) -> Self {
-        let stiffness = connection
-            .stiffness
-            .unwrap_or_else(|| inertia.min(link) * GAP_FREQUENCY * GAP_FREQUENCY);
+        let stiffness = connection.stiffness.unwrap_or_else(|| inertia.min(link) * GAP_FREQUENCY * GAP_FREQUENCY);
         let damping = connection.damping.unwrap_or_else(|| 0.5 * (stiffness * inertia).sqrt());
-        Self {
-            position: position - 0.5 * TICK * velocity,
-            velocity,
-            inertia,
-            stiffness,
-            damping,
-            connection,
-        }
+        Self { position: position - 0.5 * TICK * velocity, velocity, inertia, stiffness, damping, connection }
     }
 
     /// The position of the encoder at the time of the link's position.
@@ -138,11 +117,7 @@ impl Rotor {
 
     /// The deflection of rotor against link under `torque`, with linear characteristics of spring and gap.
     pub(super) fn deflection(&self, torque: f64) -> f64 {
-        let gap = if torque == 0.0 {
-            0.0
-        } else {
-            self.connection.halfgap.copysign(torque)
-        };
+        let gap = if torque == 0.0 { 0.0 } else { self.connection.halfgap.copysign(torque) };
         gap + torque / self.stiffness
     }
 
@@ -180,11 +155,7 @@ impl Rotor {
             let free = self.velocity + step / self.inertia * (net - through);
             // Friction takes the torque that stops the rotor, up to its level.
             let most = step / self.inertia * level;
-            self.velocity = if free.abs() <= most {
-                0.0
-            } else {
-                free - most.copysign(free)
-            };
+            self.velocity = if free.abs() <= most { 0.0 } else { free - most.copysign(free) };
             self.position += step * self.velocity;
             sum += through;
         }
@@ -222,11 +193,7 @@ mod tests {
         }
         for pair in energies.windows(2) {
             let expected = (-damping / reduced * 500.0 * TICK).exp();
-            assert!(
-                (pair[1] / pair[0] / expected - 1.0).abs() < 0.1,
-                "{} {expected}",
-                pair[1] / pair[0]
-            );
+            assert!((pair[1] / pair[0] / expected - 1.0).abs() < 0.1, "{} {expected}", pair[1] / pair[0]);
         }
     }
 
@@ -245,11 +212,7 @@ mod tests {
         let (speed, mut q) = (1.0, 0.3);
         let mut rotor = Rotor::new(connection, 0.8, 2.0, q, speed);
         for _ in 0..1000 {
-            assert!(
-                (rotor.encoder_position() - q).abs() < 1e-9,
-                "{} {q}",
-                rotor.encoder_position()
-            );
+            assert!((rotor.encoder_position() - q).abs() < 1e-9, "{} {q}", rotor.encoder_position());
             assert!(rotor.advance(0.0, 0.0, q, speed).abs() < 1e-6);
             q += TICK * speed;
         }

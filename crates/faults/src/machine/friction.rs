@@ -35,12 +35,7 @@ pub(super) struct Friction {
 
 impl Friction {
     pub(super) fn new(dof: usize) -> Self {
-        Self {
-            response: DMatrix::zeros(dof, dof),
-            age: REFRESH,
-            torques: vec![0.0; dof],
-            bias: vec![0.0; dof],
-        }
+        Self { response: DMatrix::zeros(dof, dof), age: REFRESH, torques: vec![0.0; dof], bias: vec![0.0; dof] }
     }
 
     /// Resets the mass matrix after a change of the arm.
@@ -67,9 +62,7 @@ impl Friction {
         }
         self.age += 1;
         arm.bias_torque(scratch, q, qd, &mut self.bias);
-        let drive = DMatrix::from_fn(n, 1, |i, _| {
-            net[i] - self.bias[i] + self.torques[i].clamp(-levels[i], levels[i])
-        });
+        let drive = DMatrix::from_fn(n, 1, |i, _| net[i] - self.bias[i] + self.torques[i].clamp(-levels[i], levels[i]));
         let accelerations = &self.response * drive;
         let mut v: Vec<f64> = qd.iter().zip(accelerations.iter()).map(|(v, a)| v + TICK * a).collect();
         for (torque, level) in self.torques.iter_mut().zip(levels) {
@@ -130,10 +123,6 @@ mod tests {
                 assert!(f * a <= 0.0, "{j}: {f} {a}");
             }
         }
-        assert!(
-            friction.torques[3] < -0.9 && friction.torques[4] > 0.9,
-            "{:?}",
-            friction.torques
-        );
+        assert!(friction.torques[3] < -0.9 && friction.torques[4] > 0.9, "{:?}", friction.torques);
     }
 }

@@ -87,12 +87,7 @@ impl Machine<'_> {
         let n = self.robot.arm().dof();
         let parts = &self.parts;
         let zeros = || vec![0.0; motion.q.len()];
-        let mut links = Links {
-            rigid: zeros(),
-            through: zeros(),
-            rotor: zeros(),
-            ahead: zeros(),
-        };
+        let mut links = Links { rigid: zeros(), through: zeros(), rotor: zeros(), ahead: zeros() };
         let mut states = vec![0.0; parts.links.len()];
         let mut next_change = f64::NEG_INFINITY;
         let mut arm: Arm = self.robot.driven();
@@ -117,12 +112,7 @@ impl Machine<'_> {
             }
             for (link, state) in parts.links.iter().zip(&mut states) {
                 if time >= link.onset {
-                    let at = At {
-                        time,
-                        joint: link.joint,
-                        q,
-                        qd,
-                    };
+                    let at = At { time, joint: link.joint, q, qd };
                     links.through[row + link.joint] += link.law.torque(at, state, TICK);
                 }
             }

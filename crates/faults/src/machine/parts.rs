@@ -93,29 +93,25 @@ impl Parts {
         let bodies = self.bodies.iter().map(|(_, onset)| *onset);
         let elastic = self.joints.iter().flat_map(|joint| &joint.drive);
         let elastic = elastic.filter(|(what, _)| matches!(what, Property::Elastic(..)));
-        bodies
-            .chain(elastic.map(|(_, onset)| *onset))
-            .filter(|onset| *onset > time)
-            .fold(f64::INFINITY, f64::min)
+        bodies.chain(elastic.map(|(_, onset)| *onset)).filter(|onset| *onset > time).fold(f64::INFINITY, f64::min)
     }
 
     /// The connection between rotor and link of joint `j`: springs and gaps combined.
     pub(super) fn connection_at(&self, j: usize, time: f64) -> Option<Connection> {
-        self.drive(j, time)
-            .fold(None, |found: Option<Connection>, what| match what {
-                Property::Elastic(_, connection) => Some(match found {
-                    None => *connection,
-                    Some(found) => Connection {
-                        stiffness: found.stiffness.or(connection.stiffness),
-                        damping: found.damping.or(connection.damping),
-                        halfgap: found.halfgap + connection.halfgap,
-                        more_rotor: found.more_rotor,
-                        hardening: found.hardening.min(connection.hardening),
-                        round: found.round || connection.round,
-                    },
-                }),
-                _ => found,
-            })
+        self.drive(j, time).fold(None, |found: Option<Connection>, what| match what {
+            Property::Elastic(_, connection) => Some(match found {
+                None => *connection,
+                Some(found) => Connection {
+                    stiffness: found.stiffness.or(connection.stiffness),
+                    damping: found.damping.or(connection.damping),
+                    halfgap: found.halfgap + connection.halfgap,
+                    more_rotor: found.more_rotor,
+                    hardening: found.hardening.min(connection.hardening),
+                    round: found.round || connection.round,
+                },
+            }),
+            _ => found,
+        })
     }
 
     fn drive(&self, j: usize, time: f64) -> impl Iterator<Item = &Property> {
@@ -124,13 +120,7 @@ impl Parts {
     }
 
     pub(super) fn drive_at(&self, j: usize, time: f64) -> DriveNow {
-        let mut now = DriveNow {
-            factor: 1.0,
-            limit: f64::INFINITY,
-            soft: false,
-            delay: 0.0,
-            lags: false,
-        };
+        let mut now = DriveNow { factor: 1.0, limit: f64::INFINITY, soft: false, delay: 0.0, lags: false };
         for what in self.drive(j, time) {
             match *what {
                 Property::Scale(_, factor) => now.factor *= factor,
@@ -151,26 +141,19 @@ impl Parts {
     /// The error of the encoder of joint `j` (rad or m).
     pub(super) fn encoder(&self, j: usize, time: f64) -> f64 {
         let offset = |what: &Property| {
-            if let Property::Encoder(_, offset) = what {
-                *offset
-            } else {
-                0.0
-            }
+            if let Property::Encoder(_, offset) = what { *offset } else { 0.0 }
         };
         self.drive(j, time).map(offset).sum()
     }
 
     pub(super) fn dry(&self, j: usize, time: f64) -> impl Iterator<Item = &dyn DryLaw> {
         let dry = self.joints[j].dry.iter();
-        dry.filter(move |(_, onset)| time >= *onset)
-            .map(|(law, _)| law.as_ref())
+        dry.filter(move |(_, onset)| time >= *onset).map(|(law, _)| law.as_ref())
     }
 
     pub(super) fn smooth(&self, j: usize, time: f64) -> impl Iterator<Item = &dyn DriveLaw> {
         let smooth = self.joints[j].smooth.iter();
-        smooth
-            .filter(move |(_, onset)| time >= *onset)
-            .map(|(law, _)| law.as_ref())
+        smooth.filter(move |(_, onset)| time >= *onset).map(|(law, _)| law.as_ref())
     }
 
     pub(super) fn depends_on_rigid_load(&self) -> bool {

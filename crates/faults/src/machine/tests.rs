@@ -76,14 +76,7 @@ fn before_an_onset_two_machines_are_equal() {
     let robot = seven_axis();
     let reference = reference(&robot).first_seconds(2.0);
     let plain = run(&robot, &[], &reference);
-    for name in [
-        "payload",
-        "torque_offset",
-        "torque_scale",
-        "actuation_delay",
-        "encoder_offset",
-        "spring",
-    ] {
+    for name in ["payload", "torque_offset", "torque_scale", "actuation_delay", "encoder_offset", "spring"] {
         let mut effect = detectable(name);
         effect.onset = Some(1.0);
         let with = run(&robot, &[effect], &reference);
@@ -134,15 +127,8 @@ fn reported_torques_follow_the_catalogue() {
     let arm = robot.arm();
     arm.jacobian(&mut Workspace::new(arm), &q, &arm.tool_frame(), &mut jacobian);
     for j in 0..n {
-        let force = jacobian
-            .fixed_view::<3, 1>(3, j)
-            .dot(&arm::Vector3::new(3.0, -2.0, 4.0));
-        assert!(
-            (found[j] - (plain[j] - force)).abs() < 5e-3,
-            "{j}: {} {}",
-            found[j],
-            plain[j] - force
-        );
+        let force = jacobian.fixed_view::<3, 1>(3, j).dot(&arm::Vector3::new(3.0, -2.0, 4.0));
+        assert!((found[j] - (plain[j] - force)).abs() < 5e-3, "{j}: {} {}", found[j], plain[j] - force);
     }
 }
 
@@ -151,19 +137,14 @@ fn reported_torques_follow_the_catalogue() {
 fn asymmetry_and_offset_give_one_recording() {
     let robot = seven_axis();
     let joint = Some(robot.arm().joints()[3].name.as_str());
-    let uneven = Injected::new("friction_asymmetry", joint)
-        .with("positive", 2.0)
-        .with("negative", 1.0);
+    let uneven = Injected::new("friction_asymmetry", joint).with("positive", 2.0).with("negative", 1.0);
     let level = Injected::new("coulomb_friction", joint).with("level", 1.5);
     let offset = Injected::new("torque_offset", joint).with("offset", 0.5);
     // In motion, and then at rest.
     let mut reference = reference(&robot).first_seconds(4.0);
     let (n, half) = (robot.arm().dof(), reference.q.len() / 2);
     let held: Vec<f64> = reference.q[half - n..half].to_vec();
-    reference.q[half..]
-        .iter_mut()
-        .enumerate()
-        .for_each(|(k, q)| *q = held[k % n]);
+    reference.q[half..].iter_mut().enumerate().for_each(|(k, q)| *q = held[k % n]);
     let reference = Reference::new(robot.arm(), 0.0, reference.q);
     // From the start, and from the middle of the motion on.
     for onset in [None, Some(1.0)] {
@@ -182,16 +163,10 @@ fn a_machine_that_cannot_follow_is_refused() {
     let robot = seven_axis();
     let weak = Injected::new("torque_saturation", Some("axis2")).with("limit", 1.0);
     let machine = Machine::new(&robot, &[&weak], None).expect("it fits");
-    let error = machine
-        .run(&reference(&robot).first_seconds(4.0), 0.0)
-        .map(|_| ())
-        .expect_err("it is refused");
+    let error = machine.run(&reference(&robot).first_seconds(4.0), 0.0).map(|_| ()).expect_err("it is refused");
     assert!(error.to_string().contains("axis"), "{error}");
     let gap = Injected::new("backlash", Some("axis2")).with("halfgap", 0.01);
     let machine = Machine::new(&robot, &[&gap], None).expect("it fits");
-    let error = machine
-        .run(&reference(&robot).first_seconds(1.0), 0.0)
-        .map(|_| ())
-        .expect_err("it is refused");
+    let error = machine.run(&reference(&robot).first_seconds(1.0), 0.0).map(|_| ()).expect_err("it is refused");
     assert!(error.to_string().contains("rotor"), "{error}");
 }

@@ -29,12 +29,7 @@ impl Wide for Contraction<'_> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Vec<f64> {
-        let Self {
-            prior,
-            units,
-            motions,
-            weights,
-        } = self;
+        let Self { prior, units, motions, weights } = self;
         let dof = units.len();
         let mut reverse = Reverse::new(dof);
         let mut spread = Spread::new(dof);
@@ -114,23 +109,10 @@ impl Reverse {
 
     #[inline(always)]
     fn add(&mut self, prior: &LagrangianPrior, first: &Motions, block: usize, second: &Spread) {
-        let Self {
-            forward,
-            weights: w,
-            gradient,
-            vectors,
-            kinetic,
-            potential,
-        } = self;
+        let Self { forward, weights: w, gradient, vectors, kinetic, potential } = self;
         let dof = prior.potential.len();
         let pairs = dof * (dof + 1) / 2;
-        forward.factors.compute(
-            first,
-            block,
-            &second.position,
-            &prior.kinetic_share,
-            &prior.potential_share,
-        );
+        forward.factors.compute(first, block, &second.position, &prior.kinetic_share, &prior.potential_share);
         kinetic.partial.fill(Factor::ZERO);
         potential.partial.fill(Factor::ZERO);
         for i in 0..dof {

@@ -74,12 +74,7 @@ pub(crate) struct Speeds {
 impl Speeds {
     #[inline(always)]
     pub(crate) fn new(sigma: &[f64], first: &Motions, block: usize, second: &Spread) -> Self {
-        let mut speeds = Self {
-            s: Lanes::ZERO,
-            t: Lanes::ZERO,
-            u: Lanes::ZERO,
-            tu: Lanes::ZERO,
-        };
+        let mut speeds = Self { s: Lanes::ZERO, t: Lanes::ZERO, u: Lanes::ZERO, tu: Lanes::ZERO };
         for (c, &sigma) in sigma.iter().enumerate() {
             let (p, acc) = (first.velocity(block, c) * sigma, first.acceleration(block, c) * sigma);
             speeds.s += p * second.velocity[c];
@@ -142,13 +137,7 @@ impl Scratch {
     #[inline(always)]
     pub(crate) fn covariance(&mut self, prior: &LagrangianPrior, first: &Motions, block: usize, second: &Spread) {
         let dof = self.g_au.len();
-        self.factors.compute(
-            first,
-            block,
-            &second.position,
-            &prior.kinetic_share,
-            &prior.potential_share,
-        );
+        self.factors.compute(first, block, &second.position, &prior.kinetic_share, &prior.potential_share);
         self.block.fill(Lanes::ZERO);
         for i in 0..dof {
             let sigma = prior.sigma(i);
@@ -167,10 +156,7 @@ impl Scratch {
                 let from_speed = (s_ju * g_t + s_j * g_tu - u * self.kinetic.g_a[j] - s * self.g_au[j]) * 2.0;
                 let twice_s_j = s_j * 2.0;
                 for l in 0..=i {
-                    let (s_l, s_lt) = (
-                        first.velocity(block, l) * sigma[l],
-                        first.acceleration(block, l) * sigma[l],
-                    );
+                    let (s_l, s_lt) = (first.velocity(block, l) * sigma[l], first.acceleration(block, l) * sigma[l]);
                     let value = s_lt * from_acc + s_l * from_speed
                         - twice_s_j * (t * self.kinetic.g_b[l] + s * self.g_tb[l])
                         + square * self.kinetic.g_ab[j * dof + l]
@@ -219,10 +205,7 @@ impl Wide for Covariance<'_> {
                 scratch.covariance(self.prior, self.first, block, &spread);
                 for l in 0..dof {
                     let column = self.to.as_mut().col_mut(self.second.entry(sample, l));
-                    let column = column
-                        .try_as_col_major_mut()
-                        .expect("columns are contiguous")
-                        .as_slice_mut();
+                    let column = column.try_as_col_major_mut().expect("columns are contiguous").as_slice_mut();
                     for j in 0..dof {
                         let scale = (self.units[j] * self.units[l]).recip();
                         let values = scratch.block[j * dof + l] * scale;

@@ -13,12 +13,8 @@ pub(crate) struct Factor {
 }
 
 impl Factor {
-    pub(crate) const ZERO: Self = Self {
-        value: Lanes::ZERO,
-        first: Lanes::ZERO,
-        second: Lanes::ZERO,
-        both: Lanes::ZERO,
-    };
+    pub(crate) const ZERO: Self =
+        Self { value: Lanes::ZERO, first: Lanes::ZERO, second: Lanes::ZERO, both: Lanes::ZERO };
 
     /// The sum of products of all parts.
     #[inline(always)]
@@ -59,12 +55,7 @@ fn similarity(joint: JointType, scale: f64, first: (Lanes, Lanes), second: (Lane
         JointType::Revolute => {
             let cosine = first.0 * second.0 + first.1 * second.1;
             let sine = first.1 * second.0 - first.0 * second.1;
-            Factor {
-                value: cosine,
-                first: Lanes::ZERO - sine,
-                second: sine,
-                both: cosine,
-            }
+            Factor { value: cosine, first: Lanes::ZERO - sine, second: sine, both: cosine }
         }
         JointType::Prismatic => Factor {
             value: first.0 * second.0,

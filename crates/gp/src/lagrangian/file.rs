@@ -46,13 +46,7 @@ impl LagrangianGp {
     /// # Errors
     /// [`GpError::File`], naming the file.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), GpError> {
-        let Posterior {
-            units,
-            motions,
-            alpha,
-            projected,
-            ..
-        } = &self.posterior;
+        let Posterior { units, motions, alpha, projected, .. } = &self.posterior;
         let dof = units.len();
         let each = || (0..motions.len()).flat_map(|sample| (0..dof).map(move |joint| (sample, joint)));
         let saved = Saved {
@@ -64,12 +58,8 @@ impl LagrangianGp {
             conditioning: self.conditioning.clone(),
             scales: motions.scales().to_vec(),
             units: units.clone(),
-            motions: each()
-                .map(|(sample, joint)| motions.entry_values(sample, joint))
-                .collect(),
-            weights: each()
-                .map(|(sample, joint)| alpha[motions.entry(sample, joint)])
-                .collect(),
+            motions: each().map(|(sample, joint)| motions.entry_values(sample, joint)).collect(),
+            weights: each().map(|(sample, joint)| alpha[motions.entry(sample, joint)]).collect(),
             projected: projected.as_ref().map(|matrix| {
                 let row = |i: usize| (0..=i).map(move |j| matrix[(i, j)]);
                 (0..matrix.nrows()).flat_map(row).collect()
@@ -86,10 +76,7 @@ impl LagrangianGp {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, GpError> {
         let path = path.as_ref();
         let saved: Saved = load(path, FORMAT)?;
-        saved.model().map_err(|reason| GpError::Format {
-            path: path.to_owned(),
-            reason,
-        })
+        saved.model().map_err(|reason| GpError::Format { path: path.to_owned(), reason })
     }
 }
 
@@ -109,10 +96,7 @@ impl Saved {
             if given != dof {
                 return Err(format!("{name} has {given} entries, expected {dof}"));
             }
-            match values
-                .iter()
-                .find(|value| !(value.is_finite() && (**value > 0.0 || zero && **value == 0.0)))
-            {
+            match values.iter().find(|value| !(value.is_finite() && (**value > 0.0 || zero && **value == 0.0))) {
                 Some(value) => Err(format!("{name} has the entry {value}: it must be finite and positive")),
                 None => Ok(()),
             }
@@ -131,11 +115,7 @@ impl Saved {
         let posterior = if self.log_marginal_likelihood.is_none() {
             Posterior::of_nothing(&self.prior, motions)
         } else {
-            let projected = self
-                .projected
-                .as_deref()
-                .map(|values| triangle(values, torques))
-                .transpose()?;
+            let projected = self.projected.as_deref().map(|values| triangle(values, torques)).transpose()?;
             let rho = Some(self.conditioning.relative_noise.as_slice()).filter(|_| projected.is_none());
             let factored =
                 support_factor(&self.prior, rho, &self.units, &motions).map_err(|error| error.to_string())?;
@@ -155,17 +135,11 @@ impl Saved {
 fn triangle(values: &[f64], n: usize) -> Result<Mat<f64>, String> {
     let (given, expected) = (values.len(), n * (n + 1) / 2);
     if given != expected {
-        return Err(format!(
-            "projected has {given} values, expected {expected} for {n} torques"
-        ));
+        return Err(format!("projected has {given} values, expected {expected} for {n} torques"));
     }
     check_finite("projected", values)?;
     if let Some(i) = (0..n).find(|i| values[i * (i + 3) / 2] <= 0.0) {
-        return Err(format!(
-            "projected has a diagonal entry that is not positive, in row {i}"
-        ));
+        return Err(format!("projected has a diagonal entry that is not positive, in row {i}"));
     }
-    Ok(Mat::from_fn(n, n, |i, j| {
-        if j <= i { values[i * (i + 1) / 2 + j] } else { 0.0 }
-    }))
+    Ok(Mat::from_fn(n, n, |i, j| if j <= i { values[i * (i + 1) / 2 + j] } else { 0.0 }))
 }

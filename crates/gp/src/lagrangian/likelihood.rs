@@ -41,15 +41,7 @@ impl Factored {
     ) -> Option<Self> {
         let n = y.len();
         let mut outer = Mat::zeros(n, n);
-        Covariance {
-            prior,
-            units,
-            first: motions,
-            second: motions,
-            lower_only: true,
-            to: outer.as_mut(),
-        }
-        .write();
+        Covariance { prior, units, first: motions, second: motions, lower_only: true, to: outer.as_mut() }.write();
         let mean_variance = (0..n).map(|at| outer[(at, at)]).sum::<f64>() / n as f64;
         if !(mean_variance.is_normal() && mean_variance > 0.0) {
             return None;
@@ -74,12 +66,7 @@ impl Factored {
         solve_lower(outer.as_ref(), &mut alpha);
         let quadratic = sum_of_squares(&alpha);
         solve_lower_transposed(outer.as_ref(), &mut alpha);
-        Some(Self {
-            outer,
-            alpha,
-            quadratic,
-            mean_variance,
-        })
+        Some(Self { outer, alpha, quadratic, mean_variance })
     }
 
     /// The log marginal likelihood at the amplitude that maximises it, nats.
@@ -136,12 +123,7 @@ pub(crate) struct Objective<'a> {
 impl<'a> Objective<'a> {
     pub(crate) fn new(samples: &TorqueSamples, scales: &[f64], units: &'a [f64], bounds: &'a Bounds) -> Self {
         let motions = samples.motions(scales);
-        Self {
-            units,
-            bounds,
-            targets: samples.targets(&motions, units),
-            motions,
-        }
+        Self { units, bounds, targets: samples.targets(&motions, units), motions }
     }
 
     fn split(&self, free: &[f64]) -> (LagrangianPrior, Vec<f64>) {
@@ -185,13 +167,7 @@ impl climb::Likelihood for Objective<'_> {
             by_matrix[(at, at)] += shift;
         }
         let weights: MatRef<'_, f64> = by_matrix.as_ref();
-        let mut gradient = Contraction {
-            prior: &prior,
-            units: self.units,
-            motions: &self.motions,
-            weights,
-        }
-        .value();
+        let mut gradient = Contraction { prior: &prior, units: self.units, motions: &self.motions, weights }.value();
         for by_energy in &mut gradient {
             *by_energy /= factored.mean_variance;
         }

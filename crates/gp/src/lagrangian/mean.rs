@@ -82,14 +82,7 @@ impl Wide for Mean<'_> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        let Self {
-            prior,
-            motions,
-            weights,
-            at,
-            scratch,
-            torques,
-        } = self;
+        let Self { prior, motions, weights, at, scratch, torques } = self;
         let dof = torques.len();
         scratch.torque.fill(Lanes::ZERO);
         for block in 0..motions.blocks() {
@@ -108,20 +101,9 @@ impl Scratch {
     /// Adds the contribution of the samples of one block.
     #[inline(always)]
     fn add(&mut self, prior: &LagrangianPrior, motions: &Motions, block: usize, alpha: &[Lanes], at: &Spread) {
-        let Self {
-            factors,
-            by: [g_b, g_tb, g_ab],
-            potential_by: [h_b, h_ab],
-            torque,
-        } = self;
+        let Self { factors, by: [g_b, g_tb, g_ab], potential_by: [h_b, h_ab], torque } = self;
         let dof = alpha.len();
-        factors.compute(
-            motions,
-            block,
-            &at.position,
-            &prior.kinetic_share,
-            &prior.potential_share,
-        );
+        factors.compute(motions, block, &at.position, &prior.kinetic_share, &prior.potential_share);
         // The products over the joints up to the link's, and their derivatives along the sample's speeds (t) and its weights (a).
         let (mut g, mut g_t, mut g_a) = (Lanes::ONE, Lanes::ZERO, Lanes::ZERO);
         let (mut h, mut h_a) = (Lanes::ONE, Lanes::ZERO);

@@ -127,11 +127,7 @@ impl Posterior {
         }
         .write();
         let columns = &mut workspace.columns;
-        Solve {
-            lower: self.support.as_ref(),
-            columns,
-        }
-        .run_widest();
+        Solve { lower: self.support.as_ref(), columns }.run_widest();
         let square = |columns: &[f64], joint: usize| -> f64 {
             let column = &columns[joint * n..(joint + 1) * n];
             column.iter().map(|value| value * value).sum::<f64>() * self.mean_variance * self.units[joint].powi(2)
@@ -140,11 +136,7 @@ impl Posterior {
             *variance -= square(columns, joint);
         }
         if let Some(projected) = &self.projected {
-            Solve {
-                lower: projected.as_ref(),
-                columns,
-            }
-            .run_widest();
+            Solve { lower: projected.as_ref(), columns }.run_widest();
             for (joint, variance) in variances.iter_mut().enumerate() {
                 *variance += square(columns, joint);
             }
@@ -192,15 +184,7 @@ fn project(
         let few = batch.motions(motions.scales());
         let y = batch.targets(&few, units);
         let mut f = Mat::zeros(n, y.len());
-        Covariance {
-            prior,
-            units,
-            first: motions,
-            second: &few,
-            lower_only: false,
-            to: f.as_mut(),
-        }
-        .write();
+        Covariance { prior, units, first: motions, second: &few, lower_only: false, to: f.as_mut() }.write();
         solve_lower_all(support.as_ref(), f.as_mut());
         for sample in 0..few.len() {
             for joint in 0..dof {
@@ -263,10 +247,7 @@ impl LagrangianWorkspace {
             *self = Self::new(like);
         }
         let dof = like.joints().len();
-        assert!(
-            [q, qd, qdd].iter().all(|part| part.len() == dof),
-            "a motion of {dof} joints is expected"
-        );
+        assert!([q, qd, qdd].iter().all(|part| part.len() == dof), "a motion of {dof} joints is expected");
         self.motion.set(0, 0, q, qd, qdd);
         self.motion.spread(0, &mut self.at);
     }
@@ -339,12 +320,7 @@ impl Wide for Solve<'_> {
     fn run<const FUSED: bool>(self) {
         let n = self.lower.nrows();
         for at in 0..n {
-            let lower = self
-                .lower
-                .col(at)
-                .try_as_col_major()
-                .expect("columns are contiguous")
-                .as_slice();
+            let lower = self.lower.col(at).try_as_col_major().expect("columns are contiguous").as_slice();
             for column in self.columns.chunks_exact_mut(n) {
                 let value = column[at] / lower[at];
                 column[at] = value;

@@ -51,23 +51,11 @@ impl LagrangianPrior {
         ];
         for (name, values, expected, most) in parts {
             if values.len() != expected {
-                return Err(GpError::Entries {
-                    name,
-                    given: values.len(),
-                    expected,
-                });
+                return Err(GpError::Entries { name, given: values.len(), expected });
             }
             if let Some(&value) = values.iter().find(|value| !(0.0..=most).contains(*value)) {
-                let requirement = if most == 1.0 {
-                    "from 0 to 1"
-                } else {
-                    "finite and not negative"
-                };
-                return Err(GpError::OutOfRange {
-                    name,
-                    value,
-                    requirement,
-                });
+                let requirement = if most == 1.0 { "from 0 to 1" } else { "finite and not negative" };
+                return Err(GpError::OutOfRange { name, value, requirement });
             }
         }
         Ok(())

@@ -60,9 +60,8 @@ impl LagrangianRange {
         .write();
         let noise: Vec<f64> = (0..dof).map(|joint| (gp.noise[joint] / units[joint]).powi(2)).collect();
         let own = |joint: usize| (0..samples).map(move |sample| motions.entry(sample, joint));
-        let typical: Vec<f64> = (0..dof)
-            .map(|joint| own(joint).map(|at| covariance[(at, at)]).sum::<f64>() / samples as f64)
-            .collect();
+        let typical: Vec<f64> =
+            (0..dof).map(|joint| own(joint).map(|at| covariance[(at, at)]).sum::<f64>() / samples as f64).collect();
         let mut left: Vec<f64> = (0..n).map(|at| covariance[(at, at)]).collect();
         let largest = left.iter().copied().fold(0.0, f64::max);
         let reference: Vec<f64> = (0..n).map(|at| left[at]).collect();
@@ -143,11 +142,7 @@ impl LagrangianRange {
     /// # Panics
     /// If the workspace is of another number of joints.
     pub fn variance_share(&self, joint: usize, workspace: &mut LagrangianWorkspace) -> f64 {
-        on_widest(Share {
-            range: self,
-            joint,
-            workspace,
-        })
+        on_widest(Share { range: self, joint, workspace })
     }
 }
 
@@ -162,22 +157,12 @@ impl Wide for Share<'_> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> f64 {
-        let Self {
-            range,
-            joint,
-            workspace: LagrangianWorkspace {
-                motion, at, covariance, ..
-            },
-        } = self;
+        let Self { range, joint, workspace: LagrangianWorkspace { motion, at, covariance, .. } } = self;
         let dof = range.units.len();
         covariance.covariance(&range.prior, motion, 0, at);
         let own = covariance.block[joint * dof + joint].0[0] / range.units[joint].powi(2);
         // Not `max`, which would replace NaN by a number.
-        let whole = if own < range.typical[joint] {
-            range.typical[joint]
-        } else {
-            own
-        };
+        let whole = if own < range.typical[joint] { range.typical[joint] } else { own };
         if whole == 0.0 {
             return 0.0;
         }

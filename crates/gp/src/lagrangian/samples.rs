@@ -40,30 +40,19 @@ impl TorqueSamples {
         }
         for given in [q, qd, qdd, tau] {
             if given.len() != samples * dof {
-                return Err(GpError::Shape {
-                    values: given.len(),
-                    samples,
-                    dim: dof,
-                });
+                return Err(GpError::Shape { values: given.len(), samples, dim: dof });
             }
         }
         for (part, values) in [q, qd, qdd].into_iter().enumerate() {
             if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-                return Err(GpError::Input {
-                    row: at / dof,
-                    column: part * dof + at % dof,
-                    value: values[at],
-                });
+                return Err(GpError::Input { row: at / dof, column: part * dof + at % dof, value: values[at] });
             }
         }
         if let Some(at) = tau.iter().position(|value| !value.is_finite()) {
             let value = tau[at];
             return Err(GpError::Target { row: at / dof, value });
         }
-        Ok(Self {
-            joints: joints.to_vec(),
-            values: [q, qd, qdd, tau].map(<[f64]>::to_vec),
-        })
+        Ok(Self { joints: joints.to_vec(), values: [q, qd, qdd, tau].map(<[f64]>::to_vec) })
     }
 
     /// The number of samples.
@@ -93,13 +82,9 @@ impl TorqueSamples {
         let dof = self.dof();
         let of = |values: &Vec<f64>| {
             let rows = rows.clone();
-            rows.flat_map(|row| values[row * dof..(row + 1) * dof].iter().copied())
-                .collect()
+            rows.flat_map(|row| values[row * dof..(row + 1) * dof].iter().copied()).collect()
         };
-        Self {
-            joints: self.joints.clone(),
-            values: self.values.each_ref().map(of),
-        }
+        Self { joints: self.joints.clone(), values: self.values.each_ref().map(of) }
     }
 
     /// The unit of each joint's torque: their root mean square, but at least a small part of the largest one; `None` if all are zero.
@@ -195,9 +180,7 @@ impl Motions {
     /// The motions with these indices.
     pub(crate) fn subset(&self, indices: &[usize]) -> Self {
         let dof = self.joints.len();
-        let values = indices
-            .iter()
-            .flat_map(|&sample| (0..dof).map(move |c| self.entry_values(sample, c)));
+        let values = indices.iter().flat_map(|&sample| (0..dof).map(move |c| self.entry_values(sample, c)));
         Self::of_values(&self.joints, &self.scales, &values.collect::<Vec<_>>())
     }
 
@@ -209,12 +192,8 @@ impl Motions {
     /// Motions from the values of [`Motions::entry_values`], sample after sample.
     pub(crate) fn of_values(joints: &[JointType], scales: &[f64], values: &[[f64; 4]]) -> Self {
         let dof = joints.len();
-        let all = Self {
-            joints: joints.to_vec(),
-            scales: scales.to_vec(),
-            len: values.len() / dof,
-            values: Vec::new(),
-        };
+        let all =
+            Self { joints: joints.to_vec(), scales: scales.to_vec(), len: values.len() / dof, values: Vec::new() };
         let block = |at: usize| {
             let (block, c) = (at / dof, at % dof);
             std::array::from_fn(|part| {
@@ -225,10 +204,7 @@ impl Motions {
                 }))
             })
         };
-        Self {
-            values: (0..all.blocks() * dof).map(block).collect(),
-            ..all
-        }
+        Self { values: (0..all.blocks() * dof).map(block).collect(), ..all }
     }
 
     pub(crate) fn joints(&self) -> &[JointType] {

@@ -22,12 +22,7 @@ fn numbers(count: usize, seed: u64) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-const JOINTS: [JointType; 4] = [
-    JointType::Revolute,
-    JointType::Prismatic,
-    JointType::Revolute,
-    JointType::Revolute,
-];
+const JOINTS: [JointType; 4] = [JointType::Revolute, JointType::Prismatic, JointType::Revolute, JointType::Revolute];
 
 fn prior(dof: usize) -> LagrangianPrior {
     let positive =
@@ -53,15 +48,7 @@ fn samples(joints: &[JointType], count: usize) -> TorqueSamples {
 fn matrix(prior: &LagrangianPrior, units: &[f64], motions: &Motions) -> Mat<f64> {
     let n = motions.len() * units.len();
     let mut to = Mat::zeros(n, n);
-    Covariance {
-        prior,
-        units,
-        first: motions,
-        second: motions,
-        lower_only: false,
-        to: to.as_mut(),
-    }
-    .write();
+    Covariance { prior, units, first: motions, second: motions, lower_only: false, to: to.as_mut() }.write();
     to
 }
 
@@ -123,10 +110,7 @@ fn the_covariance_is_that_of_lagranges_equations() {
                     expected += prior.viscous[j] * p * p2 + prior.coulomb[j] * p.signum() * p2.signum();
                 }
                 let value = k[(motions.entry(n, j), motions.entry(m, l))];
-                assert!(
-                    (value - expected).abs() < 2e-4 * largest,
-                    "{n} {m} {j} {l}: {value} {expected}"
-                );
+                assert!((value - expected).abs() < 2e-4 * largest, "{n} {m} {j} {l}: {value} {expected}");
             }
         }
     }
@@ -156,13 +140,7 @@ fn contracted_derivatives_are_those_of_differences() {
     let n = 52;
     let entries = numbers(n * n, 9);
     let weights = Mat::from_fn(n, n, |row, column| entries[row.max(column) * n + row.min(column)]);
-    let gradient = Contraction {
-        prior: &prior,
-        units: &units,
-        motions: &motions,
-        weights: weights.as_ref(),
-    }
-    .value();
+    let gradient = Contraction { prior: &prior, units: &units, motions: &motions, weights: weights.as_ref() }.value();
     let value = |free: &[f64]| {
         let k = matrix(&LagrangianPrior::from_free(free, 4), &units, &motions);
         let pairs = (0..n * n).map(|at| k[(at / n, at % n)] * weights[(at / n, at % n)]);
@@ -179,11 +157,7 @@ fn contracted_derivatives_are_those_of_differences() {
             value(&free)
         };
         let difference = (moved(h) - moved(-h)) / (2.0 * h);
-        assert!(
-            (gradient[at] - difference).abs() < 1e-6 * largest,
-            "{at}: {} {difference}",
-            gradient[at]
-        );
+        assert!((gradient[at] - difference).abs() < 1e-6 * largest, "{at}: {} {difference}", gradient[at]);
     }
 }
 
@@ -213,11 +187,7 @@ fn the_mean_is_the_covariance_times_the_weights() {
             let row = motions.entry(at, joint);
             let expected: f64 = (0..84).map(|column| k[(row, column)] * alpha[column]).sum();
             let most: f64 = (0..84).map(|column| (k[(row, column)] * alpha[column]).abs()).sum();
-            assert!(
-                (torques[joint] - expected).abs() < 1e-13 * most,
-                "{at} {joint}: {} {expected}",
-                torques[joint]
-            );
+            assert!((torques[joint] - expected).abs() < 1e-13 * most, "{at} {joint}: {} {expected}", torques[joint]);
         }
     }
 }

@@ -39,9 +39,7 @@ impl From<Gp> for Saved {
         Self {
             format: FORMAT.to_owned(),
             log_marginal_likelihood: Some(gp.log_marginal_likelihood).filter(|l| l.is_finite()),
-            points: (0..rank * dim)
-                .map(|at| points.coordinate(at / dim, at % dim))
-                .collect(),
+            points: (0..rank * dim).map(|at| points.coordinate(at / dim, at % dim)).collect(),
             weights: gp.posterior.weights[..rank].to_vec(),
             variance: gp.posterior.variance,
             hyperparameters: gp.hyperparameters,
@@ -62,19 +60,12 @@ impl TryFrom<Saved> for Gp {
         let rank = saved.weights.len();
         if dim == 0 || rank.checked_mul(dim) != Some(saved.points.len()) {
             let given = saved.points.len();
-            return Err(format!(
-                "points has {given} values, expected {rank} points of {dim} inputs"
-            ));
+            return Err(format!("points has {given} values, expected {rank} points of {dim} inputs"));
         }
         check_finite("points", &saved.points)?;
         check_finite("weights", &saved.weights)?;
         match &saved.variance {
-            VarianceFactors::LowRank {
-                pivots,
-                inner,
-                outer,
-                rho,
-            } => {
+            VarianceFactors::LowRank { pivots, inner, outer, rho } => {
                 if let Some(pivot) = pivots.iter().find(|pivot| **pivot >= rank) {
                     return Err(format!("variance has pivot {pivot} among {rank} points"));
                 }
@@ -114,9 +105,7 @@ impl TryFrom<Saved> for Gp {
 fn check_triangle(name: &str, triangle: &Triangle, rank: usize) -> Result<(), String> {
     let (given, expected) = (triangle.0.len(), rank * (rank + 1) / 2);
     if given != expected {
-        return Err(format!(
-            "{name} has {given} values, expected {expected} for {rank} points"
-        ));
+        return Err(format!("{name} has {given} values, expected {expected} for {rank} points"));
     }
     check_finite(name, &triangle.0)?;
     match (0..rank).find(|&i| triangle.0[i * (i + 3) / 2] <= 0.0) {

@@ -33,21 +33,16 @@ fn draw(random: &mut Random, n: usize, truth: &Hyperparameters, dim: usize) -> T
     let rho = (truth.noise / truth.amplitude).powi(2);
     let factor = Dense::new(&points, blank.targets(), rho).expect("definite").outer;
     let normals: Vec<f64> = (0..n).map(|_| random.normal()).collect();
-    let targets: Vec<f64> = (0..n)
-        .map(|i| (0..=i).map(|j| factor[(i, j)] * normals[j]).sum::<f64>() * truth.amplitude)
-        .collect();
+    let targets: Vec<f64> =
+        (0..n).map(|i| (0..=i).map(|j| factor[(i, j)] * normals[j]).sum::<f64>() * truth.amplitude).collect();
     TrainingSet::new(dim, &inputs, &targets).expect("valid")
 }
 
 /// Smooth and noise-free: the kernel matrix is nearly singular.
 fn smooth(n: usize) -> TrainingSet {
     let time = |i: usize| i as f64 / n as f64 * 6.0;
-    let inputs: Vec<f64> = (0..n)
-        .flat_map(|i| [time(i).sin(), (1.3 * time(i)).cos(), 0.7])
-        .collect();
-    let targets: Vec<f64> = (0..n)
-        .map(|i| 5.0 * (time(i).sin() + 0.5 * (1.3 * time(i)).cos()).tanh())
-        .collect();
+    let inputs: Vec<f64> = (0..n).flat_map(|i| [time(i).sin(), (1.3 * time(i)).cos(), 0.7]).collect();
+    let targets: Vec<f64> = (0..n).map(|i| 5.0 * (time(i).sin() + 0.5 * (1.3 * time(i)).cos()).tanh()).collect();
     TrainingSet::new(3, &inputs, &targets).expect("valid")
 }
 
@@ -62,19 +57,13 @@ fn assert_close(name: &str, value: f64, expected: f64, factor: f64) {
 #[test]
 fn recovers_the_hyperparameters_of_a_draw() {
     let mut random = Random(7);
-    let truth = Hyperparameters {
-        amplitude: 3.0,
-        lengths: Lengths::Isotropic(0.8),
-        noise: 0.05,
-    };
+    let truth = Hyperparameters { amplitude: 3.0, lengths: Lengths::Isotropic(0.8), noise: 0.05 };
     let training = draw(&mut random, 300, &truth, 2);
     let gp = Gp::fit(&training, &FitOptions::default()).expect("fits");
     let found = gp.hyperparameters();
     assert_close("amplitude", found.amplitude, 3.0, 1.6);
     assert_close("noise", found.noise, 0.05, 1.2);
-    let Lengths::Isotropic(length) = found.lengths else {
-        panic!("one length asked for")
-    };
+    let Lengths::Isotropic(length) = found.lengths else { panic!("one length asked for") };
     assert_close("length", length, 0.8, 1.2);
     let at_truth = Gp::with_hyperparameters(&training, &truth).expect("valid");
     assert!(gp.log_marginal_likelihood() >= at_truth.log_marginal_likelihood());
@@ -84,20 +73,11 @@ fn recovers_the_hyperparameters_of_a_draw() {
 #[test]
 fn recovers_one_length_an_input() {
     let mut random = Random(11);
-    let truth = Hyperparameters {
-        amplitude: 2.0,
-        lengths: Lengths::PerInput(vec![0.7, 2.5, 1e3]),
-        noise: 0.02,
-    };
+    let truth = Hyperparameters { amplitude: 2.0, lengths: Lengths::PerInput(vec![0.7, 2.5, 1e3]), noise: 0.02 };
     let training = draw(&mut random, 400, &truth, 3);
-    let options = FitOptions {
-        lengths: LengthScales::PerInput,
-        ..FitOptions::default()
-    };
+    let options = FitOptions { lengths: LengthScales::PerInput, ..FitOptions::default() };
     let gp = Gp::fit(&training, &options).expect("fits");
-    let Lengths::PerInput(lengths) = &gp.hyperparameters().lengths else {
-        panic!("one length an input asked for")
-    };
+    let Lengths::PerInput(lengths) = &gp.hyperparameters().lengths else { panic!("one length an input asked for") };
     assert_close("first length", lengths[0], 0.7, 1.25);
     assert_close("second length", lengths[1], 2.5, 1.5);
     assert!(lengths[2] > 20.0, "the third input does not matter: {lengths:?}");
@@ -110,10 +90,8 @@ fn a_function_too_fine_for_the_first_samples_is_found() {
     // A quarter of the samples, on which the search starts, seems to be noise only.
     let mut random = Random(13);
     let inputs = scattered(&mut random, 1000, 2);
-    let targets: Vec<f64> = inputs
-        .chunks_exact(2)
-        .map(|x| (14.0 * x[0]).sin() * (12.0 * x[1]).cos() + 0.05 * random.normal())
-        .collect();
+    let targets: Vec<f64> =
+        inputs.chunks_exact(2).map(|x| (14.0 * x[0]).sin() * (12.0 * x[1]).cos() + 0.05 * random.normal()).collect();
     let training = TrainingSet::new(2, &inputs, &targets).expect("valid");
     let gp = Gp::fit(&training, &FitOptions::default()).expect("fits");
     assert_close("noise", gp.hyperparameters().noise, 0.05, 1.5);
@@ -131,21 +109,14 @@ fn noise_free_data_are_conditioned_and_it_is_said() {
         let error = gp.mean(training.row(i)) - training.targets()[i];
         assert!(error.abs() < 1e-5, "sample {i} is off by {error:e}");
     }
-    let asked = FitOptions {
-        min_relative_noise: 1e-6,
-        ..FitOptions::default()
-    };
+    let asked = FitOptions { min_relative_noise: 1e-6, ..FitOptions::default() };
     let gp = Gp::fit(&training, &asked).expect("fits");
     assert_close("relative noise", gp.conditioning().relative_noise, 1e-6, 1.01);
 }
 
 #[test]
 fn too_little_noise_is_raised_to_the_floor() {
-    let hyperparameters = Hyperparameters {
-        amplitude: 2.0,
-        lengths: Lengths::Isotropic(1.0),
-        noise: 0.0,
-    };
+    let hyperparameters = Hyperparameters { amplitude: 2.0, lengths: Lengths::Isotropic(1.0), noise: 0.0 };
     let gp = Gp::with_hyperparameters(&smooth(200), &hyperparameters).expect("valid");
     let floor = 200.0 * f64::EPSILON;
     assert_eq!(gp.conditioning().added, floor);
@@ -157,11 +128,7 @@ fn two_fits_are_the_same_bit_for_bit() {
     let training = draw(
         &mut Random(3),
         350,
-        &Hyperparameters {
-            amplitude: 1.0,
-            lengths: Lengths::Isotropic(1.5),
-            noise: 0.01,
-        },
+        &Hyperparameters { amplitude: 1.0, lengths: Lengths::Isotropic(1.5), noise: 0.01 },
         2,
     );
     let fit = || Gp::fit(&training, &FitOptions::default()).expect("fits");
@@ -173,11 +140,7 @@ fn two_fits_are_the_same_bit_for_bit() {
 fn a_model_saved_and_loaded_predicts_the_same_bits() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("model.json");
-    let noisy = Hyperparameters {
-        amplitude: 1.0,
-        lengths: Lengths::PerInput(vec![0.2, 0.3, 0.4]),
-        noise: 0.3,
-    };
+    let noisy = Hyperparameters { amplitude: 1.0, lengths: Lengths::PerInput(vec![0.2, 0.3, 0.4]), noise: 0.3 };
     let low_rank = Gp::fit(&smooth(300), &FitOptions::default()).expect("fits");
     let training = draw(&mut Random(5), 60, &noisy, 3);
     let dense = Gp::with_hyperparameters(&training, &noisy).expect("valid");
@@ -205,18 +168,13 @@ fn a_file_that_is_no_model_is_refused_by_name() {
     let path = folder.path().join("model.json");
     let missing = Gp::load(&path).expect_err("missing").to_string();
     assert!(missing.contains("model.json"), "{missing}");
-    Gp::fit(&smooth(50), &FitOptions::default())
-        .and_then(|gp| gp.save(&path))
-        .expect("saves");
+    Gp::fit(&smooth(50), &FitOptions::default()).and_then(|gp| gp.save(&path)).expect("saves");
     let good = std::fs::read_to_string(&path).expect("reads");
     let weights = good.find("\"weights\":[").expect("has weights") + "\"weights\":[".len();
     let comma = weights + good[weights..].find(',').expect("several weights");
     let without_weight = format!("{}{}", &good[..weights], &good[comma + 1..]);
     for (text, complaint) in [
-        (
-            good.replace("testbed.gp/1", "testbed.gp/2"),
-            "expected \"testbed.gp/1\"",
-        ),
+        (good.replace("testbed.gp/1", "testbed.gp/2"), "expected \"testbed.gp/1\""),
         (good.replacen("\"dim\":3", "\"dim\":2", 1), "points of 2 inputs"),
         (without_weight, "points has"),
         (good[..good.len() / 2].to_owned(), "line 1"),
@@ -232,10 +190,7 @@ fn a_file_that_is_no_model_is_refused_by_name() {
 #[test]
 fn degenerate_data_make_no_nan() {
     let options = FitOptions::default();
-    let per_input = FitOptions {
-        lengths: LengthScales::PerInput,
-        ..FitOptions::default()
-    };
+    let per_input = FitOptions { lengths: LengthScales::PerInput, ..FitOptions::default() };
     let inputs: Vec<f64> = (0..80).map(|i| if i % 2 == 0 { f64::from(i) } else { 0.7 }).collect();
     let zigzag: Vec<f64> = (0..40).map(|i| f64::from(i % 3) - 1.0).collect();
     let line: Vec<f64> = (0..40).map(|i| 1e-9 * f64::from(i)).collect();
@@ -285,28 +240,14 @@ fn bad_data_and_settings_are_refused_by_name() {
     for (amplitude, lengths, noise, complaint) in [
         (0.0, Lengths::Isotropic(1.0), 0.1, "amplitude is 0"),
         (1.0, Lengths::Isotropic(-1.0), 0.1, "length scale is -1"),
-        (
-            1.0,
-            Lengths::PerInput(vec![1.0; 3]),
-            0.1,
-            "3 length scales for 2 inputs",
-        ),
+        (1.0, Lengths::PerInput(vec![1.0; 3]), 0.1, "3 length scales for 2 inputs"),
         (1.0, Lengths::Isotropic(1.0), f64::NAN, "noise is NaN"),
     ] {
-        let given = Hyperparameters {
-            amplitude,
-            lengths,
-            noise,
-        };
-        let error = Gp::with_hyperparameters(&training, &given)
-            .expect_err("refused")
-            .to_string();
+        let given = Hyperparameters { amplitude, lengths, noise };
+        let error = Gp::with_hyperparameters(&training, &given).expect_err("refused").to_string();
         assert!(error.contains(complaint), "{error}");
     }
-    let options = FitOptions {
-        starts: 0,
-        ..FitOptions::default()
-    };
+    let options = FitOptions { starts: 0, ..FitOptions::default() };
     assert!(Gp::fit(&training, &options).is_err());
 }
 
@@ -316,16 +257,10 @@ fn inducing_points_predict_nearly_as_all_points_do() {
     let mut random = Random(7);
     let inputs: Vec<f64> = (0..2 * n).map(|_| 4.0 * random.uniform()).collect();
     let truth = |x: &[f64]| (2.0 * x[0]).sin() + (1.5 * x[1]).cos();
-    let targets: Vec<f64> = inputs
-        .chunks_exact(2)
-        .map(|x| truth(x) + 0.05 * random.normal())
-        .collect();
+    let targets: Vec<f64> = inputs.chunks_exact(2).map(|x| truth(x) + 0.05 * random.normal()).collect();
     let training = TrainingSet::new(2, &inputs, &targets).expect("valid");
     let fit = |inducing| {
-        let options = FitOptions {
-            inducing,
-            ..FitOptions::default()
-        };
+        let options = FitOptions { inducing, ..FitOptions::default() };
         Gp::fit(&training, &options).expect("valid")
     };
     let (exact, approximate) = (fit(None), fit(Some(40)));
@@ -345,12 +280,6 @@ fn inducing_points_predict_nearly_as_all_points_do() {
     assert_eq!(again.conditioning(), approximate.conditioning());
     // As many inducing points as samples are exact.
     assert_eq!(fit(Some(n)).log_marginal_likelihood(), exact.log_marginal_likelihood());
-    let none = FitOptions {
-        inducing: Some(0),
-        ..FitOptions::default()
-    };
-    assert!(matches!(
-        Gp::fit(&training, &none),
-        Err(GpError::OutOfRange { name: "inducing", .. })
-    ));
+    let none = FitOptions { inducing: Some(0), ..FitOptions::default() };
+    assert!(matches!(Gp::fit(&training, &none), Err(GpError::OutOfRange { name: "inducing", .. })));
 }

@@ -26,16 +26,10 @@ const PER_RANK: f64 = 2.7;
 const NEAR: f64 = 20.0;
 
 /// The goal of the search on a part that does not represent all samples.
-const ROUGH: Goal = Goal {
-    negligible: 2.0,
-    near: None,
-};
+const ROUGH: Goal = Goal { negligible: 2.0, near: None };
 
 /// The goal of the search on the last part.
-const FINE: Goal = Goal {
-    negligible: 0.1,
-    near: Some(NEAR),
-};
+const FINE: Goal = Goal { negligible: 0.1, near: Some(NEAR) };
 
 /// The expected distance that the maximum moves from the next part to the one after, as a share of its last distance.
 const SHIFT: f64 = 0.4;
@@ -75,11 +69,7 @@ pub(crate) fn search(training: &TrainingSet, scale: f64, starts: usize, floor: f
             }
             let off = (factored.evaluation().profiled() - best.maximum.value).abs();
             if m == n || off <= REPRESENTED * n as f64 {
-                return Some(Found {
-                    lengths: vec![top.exp()],
-                    rho: floor,
-                    factored: Some((factored, points)),
-                });
+                return Some(Found { lengths: vec![top.exp()], rho: floor, factored: Some((factored, points)) });
             }
             enough = 2 * m;
         }
@@ -128,11 +118,7 @@ struct Part {
 
 impl Part {
     fn new(training: &TrainingSet, count: usize, floor: f64) -> Self {
-        Self {
-            training: training.thinned(count),
-            all: training.samples(),
-            floor,
-        }
+        Self { training: training.thinned(count), all: training.samples(), floor }
     }
 
     fn samples(&self) -> usize {
@@ -192,9 +178,7 @@ impl Part {
 
     /// Whether the part's samples are likelier with noise than without.
     fn is_noisy(&self, grid: &[f64], range: (f64, f64)) -> bool {
-        let noisy = NOISES
-            .iter()
-            .flat_map(|rho| grid.iter().map(|log| self.own_value(*log, rho.max(self.floor))));
+        let noisy = NOISES.iter().flat_map(|rho| grid.iter().map(|log| self.own_value(*log, rho.max(self.floor))));
         let noisy = noisy.fold(f64::NEG_INFINITY, f64::max);
         let mut line = Line::new(range, |log| self.own_value(log, self.floor));
         for log in grid {
@@ -235,11 +219,8 @@ mod tests {
             ((1.0 + 0.37 * d as f64) * time).sin() + 0.3 * (2.1 * time + d as f64).cos()
         };
         let inputs: Vec<f64> = (0..2 * n).map(|at| input(at / 2, at % 2)).collect();
-        let targets: Vec<f64> = inputs
-            .chunks_exact(2)
-            .enumerate()
-            .map(|(i, x)| (1.5 * x[0]).sin() * x[1] + noise * scatter(i))
-            .collect();
+        let targets: Vec<f64> =
+            inputs.chunks_exact(2).enumerate().map(|(i, x)| (1.5 * x[0]).sin() * x[1] + noise * scatter(i)).collect();
         TrainingSet::new(2, &inputs, &targets).expect("valid")
     }
 

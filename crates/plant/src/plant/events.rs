@@ -74,16 +74,8 @@ impl Plant {
         if resting.is_empty() {
             return;
         }
-        let limits: Vec<f64> = resting
-            .iter()
-            .map(|&i| {
-                if friction.pinned[i] {
-                    f64::INFINITY
-                } else {
-                    friction.levels[i]
-                }
-            })
-            .collect();
+        let limits: Vec<f64> =
+            resting.iter().map(|&i| if friction.pinned[i] { f64::INFINITY } else { friction.levels[i] }).collect();
         let (response, free) = self.contact_problem(tau, &resting, false);
         let holding = holding_torques(&response, &free, &limits);
         for ((&i, torque), limit) in resting.iter().zip(holding).zip(limits) {
@@ -96,8 +88,7 @@ impl Plant {
     /// Tries an interval, and computes how far every joint is from its event at the end of it.
     fn try_interval(&mut self, tau: &[f64], time: f64) {
         for (i, torque) in tau.iter().enumerate() {
-            self.engine
-                .drive(i, torque + self.friction.torque(i), self.friction.is_stuck(i));
+            self.engine.drive(i, torque + self.friction.torque(i), self.friction.is_stuck(i));
         }
         self.advance(time);
         let friction = &mut self.friction;
@@ -173,11 +164,7 @@ impl Plant {
         for (i, torque) in tau.iter().enumerate() {
             self.engine.drive(i, torque + self.friction.torque(i), false);
         }
-        let (q, qd) = if of_trial {
-            (&self.trial_q, &self.trial_qd)
-        } else {
-            (&self.q, &self.qd)
-        };
+        let (q, qd) = if of_trial { (&self.trial_q, &self.trial_qd) } else { (&self.q, &self.qd) };
         self.engine.probe(q, qd, &mut self.friction.qdd);
         let mut response = DMatrix::zeros(resting.len(), resting.len());
         for (b, &j) in resting.iter().enumerate() {

@@ -42,10 +42,7 @@ fn loop_error(arm: &Arm, order: usize) -> (f64, f64) {
     let model = arm.clone().with_scaled_inertias(1.2);
     let mut workspace = Workspace::new(&model);
     let mut reference = Reference::new(arm);
-    let options = PlantOptions {
-        order,
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { order, ..PlantOptions::default() };
     let mut plant = Plant::new(arm, &options).unwrap();
     let [mut q, mut qd, _] = task(0.0);
     plant.set_state(&q, &qd).unwrap();

@@ -37,10 +37,8 @@ fn accelerations_are_the_analytic_ones() {
         let error = acceleration_error(&arm, &PlantOptions::default());
         println!("{}: {error:e}", arm.name());
         assert!(error < 1e-9, "{}: {error:e}", arm.name());
-        let viscous = PlantOptions {
-            viscous: (0..arm.dof()).map(|i| 1.0 + i as f64).collect(),
-            ..PlantOptions::default()
-        };
+        let viscous =
+            PlantOptions { viscous: (0..arm.dof()).map(|i| 1.0 + i as f64).collect(), ..PlantOptions::default() };
         let error = acceleration_error(&arm, &viscous);
         assert!(error < 1e-9, "{} in oil: {error:e}", arm.name());
     }
@@ -104,20 +102,14 @@ fn what_rapier_cannot_simulate_is_refused() {
 <joint name="j1" type="continuous"><parent link="base"/><child link="shaft"/><axis xyz="0 0 1"/></joint>
 <link name="shaft"><inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0"/></inertial></link></robot>"#;
     let error = Plant::new(&read(rod), &PlantOptions::default()).err().unwrap();
-    assert!(
-        matches!(&error, PlantError::Singular { link, .. } if link == "shaft"),
-        "{error}"
-    );
+    assert!(matches!(&error, PlantError::Singular { link, .. } if link == "shaft"), "{error}");
     // The last link needs an inertia, unless its drive has a rotor.
     let tip = r#"<robot name="tip"><link name="base"/>
 <joint name="j1" type="continuous"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/></joint>
 <link name="l1"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
 <joint name="j2" type="continuous"><parent link="l1"/><child link="l2"/><axis xyz="1 0 0"/></joint><link name="l2"/></robot>"#;
     let error = Plant::new(&read(tip), &PlantOptions::default()).err().unwrap();
-    assert!(
-        matches!(&error, PlantError::Massless { joint } if joint == "j2"),
-        "{error}"
-    );
+    assert!(matches!(&error, PlantError::Massless { joint } if joint == "j2"), "{error}");
     let driven = read(tip).with_rotor_inertias(&[0.0, 0.1]);
     assert!(acceleration_error(&driven, &PlantOptions::default()) < 1e-9);
 }
@@ -128,46 +120,19 @@ fn bad_options_and_vectors_are_refused() {
     let refuse = |options: PlantOptions| Plant::new(&arm, &options).err().unwrap().to_string();
     let default = PlantOptions::default;
     assert!(refuse(PlantOptions { step: 0.0, ..default() }).contains("step is 0 s"));
-    assert!(
-        refuse(PlantOptions {
-            step: f64::NAN,
-            ..default()
-        })
-        .contains("step is NaN")
-    );
+    assert!(refuse(PlantOptions { step: f64::NAN, ..default() }).contains("step is NaN"));
     assert!(refuse(PlantOptions { order: 0, ..default() }).contains("give 1 to 8"));
-    assert!(
-        refuse(PlantOptions {
-            order: LARGEST_ORDER + 1,
-            ..default()
-        })
-        .contains("order is 9")
-    );
-    assert!(
-        refuse(PlantOptions {
-            viscous: vec![1.0; 5],
-            ..default()
-        })
-        .contains("5 values")
-    );
+    assert!(refuse(PlantOptions { order: LARGEST_ORDER + 1, ..default() }).contains("order is 9"));
+    assert!(refuse(PlantOptions { viscous: vec![1.0; 5], ..default() }).contains("5 values"));
     let coulomb = vec![0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
     assert!(refuse(PlantOptions { coulomb, ..default() }).contains("\"joint3\" is -1"));
-    assert!(
-        refuse(PlantOptions {
-            viscous: vec![f64::NAN; 6],
-            ..default()
-        })
-        .contains("\"joint1\" is NaN")
-    );
+    assert!(refuse(PlantOptions { viscous: vec![f64::NAN; 6], ..default() }).contains("\"joint1\" is NaN"));
     let driven = arm.clone().with_rotor_inertias(&[-1.0; 6]);
     assert!(matches!(Plant::new(&driven, &default()), Err(PlantError::Value { .. })));
 
     let mut plant = Plant::new(&arm, &default()).unwrap();
     assert!(matches!(plant.step(&[0.0; 5]), Err(PlantError::Count { .. })));
-    assert!(matches!(
-        plant.set_state(&[f64::NAN; 6], &[0.0; 6]),
-        Err(PlantError::Diverged { .. })
-    ));
+    assert!(matches!(plant.set_state(&[f64::NAN; 6], &[0.0; 6]), Err(PlantError::Diverged { .. })));
     let mut tau = [0.0; 6];
     tau[4] = f64::NAN;
     assert!(matches!(plant.step(&tau), Err(PlantError::Diverged { .. })));
@@ -177,8 +142,5 @@ fn bad_options_and_vectors_are_refused() {
     let mut fresh = Plant::new(&arm, &default()).unwrap();
     plant.step(&[1.0; 6]).unwrap();
     fresh.step(&[1.0; 6]).unwrap();
-    assert_eq!(
-        (plant.q(), plant.qd(), plant.time()),
-        (fresh.q(), fresh.qd(), fresh.time())
-    );
+    assert_eq!((plant.q(), plant.qd(), plant.time()), (fresh.q(), fresh.qd(), fresh.time()));
 }

@@ -10,11 +10,7 @@ const VISCOUS: f64 = 203.0;
 const COULOMB: f64 = 20.0;
 
 fn emps() -> Plant {
-    let options = PlantOptions {
-        viscous: vec![VISCOUS],
-        coulomb: vec![COULOMB],
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { viscous: vec![VISCOUS], coulomb: vec![COULOMB], ..PlantOptions::default() };
     Plant::new(&slider(), &options).unwrap()
 }
 
@@ -27,19 +23,11 @@ fn exact(mut q: f64, mut v: f64, force: f64, mut time: f64) -> (f64, f64) {
         }
         let sign = if v == 0.0 { force.signum() } else { v.signum() };
         let steady = (force - sign * COULOMB) / VISCOUS;
-        let stop = if sign * steady < 0.0 {
-            ((steady - v) / steady).ln() / rate
-        } else {
-            f64::INFINITY
-        };
+        let stop = if sign * steady < 0.0 { ((steady - v) / steady).ln() / rate } else { f64::INFINITY };
         let until = time.min(stop);
         let decay = (-rate * until).exp();
         q += steady * until + (v - steady) / rate * (1.0 - decay);
-        v = if stop <= time {
-            0.0
-        } else {
-            steady + (v - steady) * decay
-        };
+        v = if stop <= time { 0.0 } else { steady + (v - steady) * decay };
         time -= until;
         if time <= 0.0 {
             return (q, v);
@@ -61,12 +49,7 @@ fn a_drive_stops_and_reverses_as_the_closed_form() {
         plant.step(&[force]).unwrap();
         worst = worst.max((plant.q()[0] - q).abs());
         rests += u32::from(v == 0.0);
-        assert_eq!(
-            plant.qd()[0] == 0.0,
-            v == 0.0,
-            "step {i}: {} and not {v}",
-            plant.qd()[0]
-        );
+        assert_eq!(plant.qd()[0] == 0.0, v == 0.0, "step {i}: {} and not {v}", plant.qd()[0]);
     }
     println!("{worst:e} m, {rests} rests");
     assert!(rests > 100 && worst < 1e-9, "{worst:e} m, {rests} rests");
@@ -98,10 +81,7 @@ fn friction_holds_an_arm_up() {
     arm.gravity_torque(&mut Workspace::new(&arm), &start, &mut gravity);
     let mut levels: Vec<f64> = gravity.iter().map(|torque| 1.01 * torque.abs() + 20.0).collect();
     let run = |levels: &[f64]| {
-        let options = PlantOptions {
-            coulomb: levels.to_vec(),
-            ..PlantOptions::default()
-        };
+        let options = PlantOptions { coulomb: levels.to_vec(), ..PlantOptions::default() };
         let mut plant = Plant::new(&arm, &options).unwrap();
         plant.set_state(&start, &[0.0; 6]).unwrap();
         for _ in 0..200 {
@@ -114,11 +94,7 @@ fn friction_holds_an_arm_up() {
     assert!((0..6).all(|i| held.is_stuck(i)));
     levels[1] = 0.9 * gravity[1].abs();
     let fallen = run(&levels);
-    assert!(
-        (fallen.q()[1] - start[1]).abs() > 1e-3 && fallen.is_stuck(0),
-        "{:?}",
-        fallen.q()
-    );
+    assert!((fallen.q()[1] - start[1]).abs() > 1e-3 && fallen.is_stuck(0), "{:?}", fallen.q());
 }
 
 /// Joints without dry friction are not affected by it, and friction with a level of zero has no effect.
@@ -126,10 +102,7 @@ fn friction_holds_an_arm_up() {
 fn no_friction_is_no_friction() {
     let arm = puma();
     let run = |coulomb: Vec<f64>| {
-        let options = PlantOptions {
-            coulomb,
-            ..PlantOptions::default()
-        };
+        let options = PlantOptions { coulomb, ..PlantOptions::default() };
         let mut plant = Plant::new(&arm, &options).unwrap();
         plant.set_state(&[0.3; 6], &[0.0; 6]).unwrap();
         for _ in 0..100 {
@@ -147,10 +120,7 @@ fn no_friction_is_no_friction() {
 #[test]
 fn levels_may_change() {
     let arm = puma();
-    let options = PlantOptions {
-        coulomb: vec![2.0; 6],
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { coulomb: vec![2.0; 6], ..PlantOptions::default() };
     let mut at_first = Plant::new(&arm, &options).unwrap();
     let mut later = Plant::new(&arm, &PlantOptions::default()).unwrap();
     later.set_dry_friction(&[2.0; 6]).unwrap();
@@ -170,18 +140,13 @@ fn levels_may_change() {
 #[test]
 fn a_swing_dies_out() {
     let arm = puma();
-    let options = PlantOptions {
-        coulomb: vec![3.0, 60.0, 20.0, 0.3, 0.3, 0.1],
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { coulomb: vec![3.0, 60.0, 20.0, 0.3, 0.3, 0.1], ..PlantOptions::default() };
     let mut plant = Plant::new(&arm, &options).unwrap();
     let mut workspace = Workspace::new(&arm);
     let mut energy = |plant: &Plant| {
         arm.kinetic_energy(&mut workspace, plant.q(), plant.qd()) + arm.potential_energy(&mut workspace, plant.q())
     };
-    plant
-        .set_state(&[0.3, 0.2, 0.7, 0.9, 1.1, 1.3], &[0.0, 1.0, 0.0, 2.0, -2.0, 3.0])
-        .unwrap();
+    plant.set_state(&[0.3, 0.2, 0.7, 0.9, 1.1, 1.3], &[0.0, 1.0, 0.0, 2.0, -2.0, 3.0]).unwrap();
     let mut last = energy(&plant);
     for i in 0..4000 {
         plant.step(&[0.0; 6]).unwrap();

@@ -35,9 +35,7 @@ impl<'a> StickSlip<'a> {
         let mut bias = vec![0.0; n];
         self.arm.mass_matrix(&mut self.workspace, q, &mut mass);
         self.arm.bias_torque(&mut self.workspace, q, qd, &mut bias);
-        let push: Vec<f64> = (0..n)
-            .map(|i| tau[i] - bias[i] - signs[i].unwrap_or(0.0) * self.levels[i])
-            .collect();
+        let push: Vec<f64> = (0..n).map(|i| tau[i] - bias[i] - signs[i].unwrap_or(0.0) * self.levels[i]).collect();
         let moving: Vec<usize> = (0..n).filter(|&i| signs[i].is_some()).collect();
         let block = DMatrix::from_fn(moving.len(), moving.len(), |a, b| mass[(moving[a], moving[b])]);
         let right = DMatrix::from_fn(moving.len(), 1, |a, _| push[moving[a]]);
@@ -48,9 +46,7 @@ impl<'a> StickSlip<'a> {
                 qdd[i] = solution[a];
             }
         }
-        let needed = (0..n)
-            .map(|i| (0..n).map(|j| mass[(i, j)] * qdd[j]).sum::<f64>() - push[i])
-            .collect();
+        let needed = (0..n).map(|i| (0..n).map(|j| mass[(i, j)] * qdd[j]).sum::<f64>() - push[i]).collect();
         (qdd, needed)
     }
 
@@ -59,9 +55,7 @@ impl<'a> StickSlip<'a> {
         let n = q.len();
         let dry = |i: usize| self.levels[i] > 0.0;
         let resting: Vec<usize> = (0..n).filter(|&i| qd[i] == 0.0 && dry(i)).collect();
-        let mut signs: Vec<Option<f64>> = (0..n)
-            .map(|i| Some(if dry(i) { qd[i].signum() } else { 0.0 }))
-            .collect();
+        let mut signs: Vec<Option<f64>> = (0..n).map(|i| Some(if dry(i) { qd[i].signum() } else { 0.0 })).collect();
         for pattern in 0..3_usize.pow(resting.len() as u32) {
             for (digit, &i) in resting.iter().enumerate() {
                 signs[i] = [None, Some(1.0), Some(-1.0)][pattern / 3_usize.pow(digit as u32) % 3];
@@ -122,11 +116,7 @@ impl<'a> StickSlip<'a> {
             for _ in 0..60 {
                 let middle = 0.5 * (before + after);
                 let (q, qd) = self.smooth(q, qd, tau, middle);
-                *(if self.is_beyond(&q, &qd, tau) {
-                    &mut after
-                } else {
-                    &mut before
-                }) = middle;
+                *(if self.is_beyond(&q, &qd, tau) { &mut after } else { &mut before }) = middle;
             }
             let start = qd.clone();
             (*q, *qd) = self.smooth(q, qd, tau, after);
@@ -152,11 +142,7 @@ fn stick_slip_error(
     mut law: impl FnMut(f64, &[f64], &[f64]) -> Vec<f64>,
 ) -> (f64, usize, usize) {
     let mut reference = StickSlip::new(arm, levels);
-    let options = PlantOptions {
-        order,
-        coulomb: levels.to_vec(),
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { order, coulomb: levels.to_vec(), ..PlantOptions::default() };
     let mut plant = Plant::new(arm, &options).unwrap();
     let mut q: Vec<f64> = (0..arm.dof()).map(|i| 0.1 + 0.1 * i as f64).collect();
     let mut qd = vec![0.0; arm.dof()];
@@ -193,13 +179,9 @@ fn stick_and_slip_are_the_analytic_ones() {
         }
         tau
     };
-    let gantry = gantry()
-        .with_gravity(arm::Vector3::zeros())
-        .with_rotor_inertias(&[1.0, 0.3, 0.3, 0.1]);
+    let gantry = gantry().with_gravity(arm::Vector3::zeros()).with_rotor_inertias(&[1.0, 0.3, 0.3, 0.1]);
     let slack = |time: f64, q: &[f64], qd: &[f64]| -> Vec<f64> {
-        (0..4)
-            .map(|i| [12.0, 2.0, 6.0, 0.5][i] * (9.0 * time + i as f64).sin() - 5.0 * q[i] - 0.5 * qd[i])
-            .collect()
+        (0..4).map(|i| [12.0, 2.0, 6.0, 0.5][i] * (9.0 * time + i as f64).sin() - 5.0 * q[i] - 0.5 * qd[i]).collect()
     };
     for (order, bound) in [(1, 1e-2), (2, 1e-5), (3, 1e-8), (4, 1e-11)] {
         let (error, events, rests) = stick_slip_error(&puma, order, &levels, 2000, &mut stirred);

@@ -5,10 +5,7 @@ use crate::{Plant, PlantOptions};
 use arm::{Arm, Workspace};
 
 fn plant(arm: &Arm, order: usize) -> Plant {
-    let options = PlantOptions {
-        order,
-        ..PlantOptions::default()
-    };
+    let options = PlantOptions { order, ..PlantOptions::default() };
     Plant::new(arm, &options).unwrap()
 }
 
@@ -95,9 +92,7 @@ fn a_compensated_arm_holds_and_does_not_sleep() {
 fn positions_do_not_wrap() {
     let arm = skew().with_gravity(arm::Vector3::zeros());
     let mut plant = plant(&arm, 3);
-    plant
-        .set_state(&[0.0; 7], &[8.0, 0.0, 0.0, 0.0, 0.0, 0.0, -8.0])
-        .unwrap();
+    plant.set_state(&[0.0; 7], &[8.0, 0.0, 0.0, 0.0, 0.0, 0.0, -8.0]).unwrap();
     let (mut q, mut qd) = ([0.0; 7], [8.0, 0.0, 0.0, 0.0, 0.0, 0.0, -8.0]);
     Reference::new(&arm).run(&mut q, &mut qd, &[0.0; 7], 1.0, 10_000);
     for _ in 0..1000 {
@@ -114,11 +109,8 @@ fn positions_do_not_wrap() {
 #[test]
 fn runs_repeat_to_the_bit() {
     let arm = puma();
-    let friction = PlantOptions {
-        viscous: vec![1.0; 6],
-        coulomb: vec![5.0, 5.0, 5.0, 0.0, 0.5, 0.5],
-        ..PlantOptions::default()
-    };
+    let friction =
+        PlantOptions { viscous: vec![1.0; 6], coulomb: vec![5.0, 5.0, 5.0, 0.0, 0.5, 0.5], ..PlantOptions::default() };
     for options in [PlantOptions::default(), friction] {
         let run = |plant: &mut Plant| {
             plant.set_state(&[0.1; 6], &[0.4; 6]).unwrap();
@@ -143,16 +135,8 @@ fn runs_repeat_to_the_bit() {
 /// the number of steps times the step, without accumulated rounding.
 #[test]
 fn viscous_friction_is_accurate_and_stable() {
-    for (friction, bound) in [
-        (203.0, 1e-10),
-        (95.0 / 0.02, 1e-7),
-        (95.0 / 1e-4, 1e-3),
-        (95.0 / 1e-7, 1e-3),
-    ] {
-        let options = PlantOptions {
-            viscous: vec![friction],
-            ..PlantOptions::default()
-        };
+    for (friction, bound) in [(203.0, 1e-10), (95.0 / 0.02, 1e-7), (95.0 / 1e-4, 1e-3), (95.0 / 1e-7, 1e-3)] {
+        let options = PlantOptions { viscous: vec![friction], ..PlantOptions::default() };
         let mut plant = Plant::new(&slider(), &options).unwrap();
         plant.set_state(&[0.0], &[0.5]).unwrap();
         let rate = friction / 95.0;
@@ -164,9 +148,6 @@ fn viscous_friction_is_accurate_and_stable() {
             worst = worst.max((plant.q()[0] - 0.5 / rate * (1.0 - (-rate * time).exp())).abs());
         }
         println!("F_v {friction:e}: {worst:e} m");
-        assert!(
-            worst < bound && plant.qd()[0].abs() < 0.5,
-            "F_v {friction}: {worst:e} m"
-        );
+        assert!(worst < bound && plant.qd()[0].abs() < 0.5, "F_v {friction}: {worst:e} m");
     }
 }

@@ -60,11 +60,7 @@ mod tests {
         let scatter = |row: usize| 0.0015 * (1.7 * row as f64).sin() * (0.3 * row as f64 * row as f64).cos();
         let stamps: Vec<f64> = (0..3000).map(|row| 0.01 * row as f64 + scatter(row)).collect();
         let sampled = |row: usize| {
-            if sampled_at_stamps {
-                stamps[row]
-            } else {
-                0.01 * row as f64
-            }
+            if sampled_at_stamps { stamps[row] } else { 0.01 * row as f64 }
         };
         let q = |row: usize| ((3.0 * sampled(row)).sin() / step).round() * step;
         let q: Vec<f64> = (0..stamps.len()).map(q).collect();

@@ -45,13 +45,7 @@ struct Survivor {
 /// The ticks of `stamps` (increasing, one piece), counted from the first, for a clock with about the period `period`
 /// (s) and a scatter of the stamps of `scatter` periods.
 fn ticks(stamps: &[f64], period: f64, scatter: f64, learn: f64) -> Vec<i64> {
-    let mut survivors = vec![Survivor {
-        cost: 0.0,
-        tick: 0,
-        phase: stamps[0],
-        period,
-        from: 0,
-    }];
+    let mut survivors = vec![Survivor { cost: 0.0, tick: 0, phase: stamps[0], period, from: 0 }];
     let mut path: Vec<[(u8, u8); SURVIVORS]> = Vec::with_capacity(stamps.len());
     path.push([(0, 0); SURVIVORS]);
     let mut next: Vec<Survivor> = Vec::with_capacity(3 * SURVIVORS);
@@ -68,16 +62,8 @@ fn ticks(stamps: &[f64], period: f64, scatter: f64, learn: f64) -> Vec<i64> {
                 let off = away - step as f64;
                 let size = (off / scatter).abs();
                 // Quadratic near the phase and linear beyond it, because a stamp may be very late.
-                let own = if size < 2.0 {
-                    size * size / 2.0
-                } else {
-                    2.0 * size - 2.0
-                };
-                let lost = if step == 1 {
-                    0.0
-                } else {
-                    LOST + LOST_MORE * (step - 2) as f64
-                };
+                let own = if size < 2.0 { size * size / 2.0 } else { 2.0 * size - 2.0 };
+                let lost = if step == 1 { 0.0 } else { LOST + LOST_MORE * (step - 2) as f64 };
                 let pull = off.clamp(-2.0 * scatter, 2.0 * scatter) * survivor.period;
                 let cost = survivor.cost + own + lost;
                 if cost > HOPELESS + cheapest {
@@ -111,13 +97,12 @@ fn ticks(stamps: &[f64], period: f64, scatter: f64, learn: f64) -> Vec<i64> {
         path.push(entry);
         std::mem::swap(&mut survivors, &mut next);
     }
-    let mut slot = (0..survivors.len()).fold(0, |best, slot| {
-        if survivors[slot].cost < survivors[best].cost {
-            slot
-        } else {
-            best
-        }
-    });
+    let mut slot = (0..survivors.len()).fold(
+        0,
+        |best, slot| {
+            if survivors[slot].cost < survivors[best].cost { slot } else { best }
+        },
+    );
     let mut list = vec![0; stamps.len()];
     let mut tick = survivors[slot].tick;
     for row in (0..stamps.len()).rev() {
@@ -174,11 +159,7 @@ fn steps(stamps: &[f64]) -> (f64, f64, bool) {
     let variance = product(0);
     let beside = product(1) / variance;
     let alone = [2, 3].iter().all(|&lag| (product(lag) / variance).abs() < UNRELATED);
-    (
-        usual,
-        (variance / 2.0).sqrt() / usual,
-        BESIDE.contains(&beside) && alone,
-    )
+    (usual, (variance / 2.0).sqrt() / usual, BESIDE.contains(&beside) && alone)
 }
 
 /// The period (s) and each row's tick, counted from the first of its piece, if stamps scatter widely about a clock;
@@ -216,21 +197,12 @@ fn find(time: &[f64], stretches: &[std::ops::Range<usize>]) -> Option<(f64, Vec<
 pub fn by_order(time: &[f64], breaks: &[usize], period: f64) -> Option<Clock> {
     let pieces = split(time, breaks, period, false);
     let (period, ticks) = find(time, &pieces)?;
-    let mut clock = Clock {
-        period,
-        ticks,
-        pieces: Vec::with_capacity(pieces.len()),
-        regular: true,
-        jitter: (0.0, 0.0, 0),
-    };
+    let mut clock =
+        Clock { period, ticks, pieces: Vec::with_capacity(pieces.len()), regular: true, jitter: (0.0, 0.0, 0) };
     for rows in &pieces {
         let stamps = &time[rows.clone()];
         let phases = levels(stamps, &clock.ticks[rows.clone()], period);
-        clock.pieces.push(Piece {
-            rows: rows.clone(),
-            start: 0.0,
-            shift: 0.0,
-        });
+        clock.pieces.push(Piece { rows: rows.clone(), start: 0.0, shift: 0.0 });
         measure_jitter(&mut clock, stamps, &phases, 0, rows.start);
     }
     clock.jitter.0 = (clock.jitter.0 / time.len() as f64).sqrt();
@@ -245,19 +217,9 @@ pub fn by_order(time: &[f64], breaks: &[usize], period: f64) -> Option<Clock> {
 fn levels(stamps: &[f64], ticks: &[i64], period: f64) -> Vec<(f64, f64)> {
     let blocks = (stamps.len() / BLOCK).max(1);
     let level = |block: usize| {
-        let rows = block * BLOCK..if block + 1 == blocks {
-            stamps.len()
-        } else {
-            (block + 1) * BLOCK
-        };
-        let sum: f64 = rows
-            .clone()
-            .map(|row| stamps[row] - stamps[0] - ticks[row] as f64 * period)
-            .sum();
-        (
-            (rows.start + rows.end) as f64 / 2.0,
-            stamps[0] + sum / rows.len() as f64,
-        )
+        let rows = block * BLOCK..if block + 1 == blocks { stamps.len() } else { (block + 1) * BLOCK };
+        let sum: f64 = rows.clone().map(|row| stamps[row] - stamps[0] - ticks[row] as f64 * period).sum();
+        ((rows.start + rows.end) as f64 / 2.0, stamps[0] + sum / rows.len() as f64)
     };
     (0..blocks).map(level).collect()
 }

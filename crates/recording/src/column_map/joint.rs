@@ -44,19 +44,17 @@ fn factor(source: &Source<'_>, value: Option<&Spanned<f64>>, key: &str) -> Resul
     match value {
         None => Ok(1.0),
         Some(value) if value.get_ref().is_finite() && *value.get_ref() != 0.0 => Ok(*value.get_ref()),
-        Some(value) => Err(source.error(
-            value.span(),
-            format!("{key} is {}; it must be finite and not zero", value.get_ref()),
-        )),
+        Some(value) => {
+            Err(source.error(value.span(), format!("{key} is {}; it must be finite and not zero", value.get_ref())))
+        }
     }
 }
 
 fn sign(source: &Source<'_>, value: Option<&Spanned<f64>>, key: &str) -> Result<f64, RecordingError> {
     match value {
-        Some(value) if value.get_ref().abs() != 1.0 => Err(source.error(
-            value.span(),
-            format!("{key} is {}; it must be 1 or -1", value.get_ref()),
-        )),
+        Some(value) if value.get_ref().abs() != 1.0 => {
+            Err(source.error(value.span(), format!("{key} is {}; it must be 1 or -1", value.get_ref())))
+        }
         value => Ok(value.map_or(1.0, |value| *value.get_ref())),
     }
 }
@@ -82,42 +80,10 @@ pub fn entries(
     let motion = joint_sign / gear;
     let torque = joint_sign * tau_sign * gear;
     let rows = [
-        (
-            Quantity::Position,
-            "q",
-            Some(&raw.q),
-            &raw.q_unit,
-            &raw.q_scale,
-            motion,
-            q_offset,
-        ),
-        (
-            Quantity::Velocity,
-            "qd",
-            raw.qd.as_ref(),
-            &raw.qd_unit,
-            &raw.qd_scale,
-            motion,
-            0.0,
-        ),
-        (
-            Quantity::Acceleration,
-            "qdd",
-            raw.qdd.as_ref(),
-            &raw.qdd_unit,
-            &raw.qdd_scale,
-            motion,
-            0.0,
-        ),
-        (
-            Quantity::Torque,
-            "tau",
-            Some(&raw.tau),
-            &raw.tau_unit,
-            &raw.tau_scale,
-            torque,
-            0.0,
-        ),
+        (Quantity::Position, "q", Some(&raw.q), &raw.q_unit, &raw.q_scale, motion, q_offset),
+        (Quantity::Velocity, "qd", raw.qd.as_ref(), &raw.qd_unit, &raw.qd_scale, motion, 0.0),
+        (Quantity::Acceleration, "qdd", raw.qdd.as_ref(), &raw.qdd_unit, &raw.qdd_scale, motion, 0.0),
+        (Quantity::Torque, "tau", Some(&raw.tau), &raw.tau_unit, &raw.tau_scale, torque, 0.0),
         (
             Quantity::SecondaryPosition,
             "q_secondary",
@@ -136,24 +102,8 @@ pub fn entries(
             torque,
             0.0,
         ),
-        (
-            Quantity::Current,
-            "current",
-            raw.current.as_ref(),
-            &raw.current_unit,
-            &None,
-            joint_sign * tau_sign,
-            0.0,
-        ),
-        (
-            Quantity::Temperature,
-            "temperature",
-            raw.temperature.as_ref(),
-            &raw.temperature_unit,
-            &None,
-            1.0,
-            0.0,
-        ),
+        (Quantity::Current, "current", raw.current.as_ref(), &raw.current_unit, &None, joint_sign * tau_sign, 0.0),
+        (Quantity::Temperature, "temperature", raw.temperature.as_ref(), &raw.temperature_unit, &None, 1.0, 0.0),
     ];
     for (quantity, key, column, unit, scale, side, offset) in rows {
         let Some(column) = column else {
@@ -169,10 +119,7 @@ pub fn entries(
         if let (true, None, Some(unit)) = (conversion.needs_scale, scale, unit) {
             return Err(source.error(
                 unit.span(),
-                format!(
-                    "a torque in \"{}\" needs {key}_scale, the N m (or N) that one unit makes",
-                    unit.get_ref()
-                ),
+                format!("a torque in \"{}\" needs {key}_scale, the N m (or N) that one unit makes", unit.get_ref()),
             ));
         }
         let scale = factor(source, scale.as_ref(), &format!("{key}_scale"))?;

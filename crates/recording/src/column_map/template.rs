@@ -72,11 +72,7 @@ impl ColumnMap {
             entry.map_or("", |entry| entry.header.as_str())
         };
         let (q, tau) = (pattern(Quantity::Position), pattern(Quantity::Torque));
-        let mut expanded = Expanded {
-            joints: Vec::new(),
-            entries: Vec::new(),
-            names: Vec::new(),
-        };
+        let mut expanded = Expanded { joints: Vec::new(), entries: Vec::new(), names: Vec::new() };
         let is_wanted =
             |topic: &str| topic.is_empty() || self.topics.is_empty() || self.topics.iter().any(|t| t == topic);
         let with = |pattern: &str, wanted: &str| -> Vec<String> {
@@ -111,29 +107,17 @@ impl ColumnMap {
                     ));
                 }
             };
-            self.add(
-                &mut expanded,
-                headers,
-                first,
-                joint,
-                (topics.0.as_str(), topics.1.as_str()),
-            )?;
+            self.add(&mut expanded, headers, first, joint, (topics.0.as_str(), topics.1.as_str()))?;
         }
         // Velocities and accelerations are for all joints or for none.
         for quantity in [Quantity::Velocity, Quantity::Acceleration] {
-            let count = expanded
-                .entries
-                .iter()
-                .filter(|entry| entry.quantity == quantity)
-                .count();
+            let count = expanded.entries.iter().filter(|entry| entry.quantity == quantity).count();
             if count < expanded.joints.len() {
                 expanded.entries.retain(|entry| entry.quantity != quantity);
             }
         }
         if expanded.joints.is_empty() {
-            let is_there = headers
-                .iter()
-                .any(|header| capture(q, header).is_some_and(|(topic, _)| is_wanted(topic)));
+            let is_there = headers.iter().any(|header| capture(q, header).is_some_and(|(topic, _)| is_wanted(topic)));
             let lacking = if is_there { tau } else { q };
             return Err(self.refuse(1, format!("there is no column \"{lacking}\"")));
         }
@@ -141,11 +125,7 @@ impl ColumnMap {
     }
 
     fn as_it_is(&self) -> Expanded {
-        Expanded {
-            joints: self.joints.clone(),
-            entries: self.entries.clone(),
-            names: Vec::new(),
-        }
+        Expanded { joints: self.joints.clone(), entries: self.entries.clone(), names: Vec::new() }
     }
 
     /// Adds one joint with its existing columns; `topics` are those of its positions and of its torques.
@@ -171,18 +151,11 @@ impl ColumnMap {
             }
         };
         for entry in &self.entries {
-            let is_torque = matches!(
-                entry.quantity,
-                Quantity::Torque | Quantity::CurrentTorque | Quantity::Current
-            );
+            let is_torque = matches!(entry.quantity, Quantity::Torque | Quantity::CurrentTorque | Quantity::Current);
             let topics = if is_torque { [of_tau, of_q] } else { [of_q, of_tau] };
             let header = topics.map(|topic| filled(&entry.header, topic, joint));
             if let Some(header) = header.into_iter().find(|header| at(header).is_some()) {
-                expanded.entries.push(Entry {
-                    header,
-                    joint: number,
-                    ..entry.clone()
-                });
+                expanded.entries.push(Entry { header, joint: number, ..entry.clone() });
             }
         }
         expanded.joints.push(name);

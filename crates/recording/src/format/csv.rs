@@ -57,11 +57,7 @@ impl Format for Csv {
             },
         };
         if let Some(reason) = header::numbers(&headers) {
-            return Err(RecordingError::Header {
-                path,
-                has_lines: true,
-                reason,
-            });
+            return Err(RecordingError::Header { path, has_lines: true, reason });
         }
         let mut rows = Lines {
             path,
@@ -115,11 +111,7 @@ impl Lines {
     }
 
     fn refuse(&self, row: &ByteRecord, reason: String) -> RecordingError {
-        RecordingError::Row {
-            path: self.path.clone(),
-            place: Row::of_text(row).place,
-            reason,
-        }
+        RecordingError::Row { path: self.path.clone(), place: Row::of_text(row).place, reason }
     }
 
     /// Whether the last row, which is in `before`, is complete.
@@ -150,10 +142,7 @@ impl Lines {
             "mend or delete the row"
         };
         let found = row.len();
-        Err(self.refuse(
-            row,
-            format!("the row has {found} cells, the header {}; {remedy}", self.width),
-        ))
+        Err(self.refuse(row, format!("the row has {found} cells, the header {}; {remedy}", self.width)))
     }
 }
 
@@ -163,8 +152,7 @@ impl RowSource for Lines {
             return Ok(None);
         }
         self.above.clear();
-        self.above
-            .extend_from_slice(self.before.iter().next_back().unwrap_or_default());
+        self.above.extend_from_slice(self.before.iter().next_back().unwrap_or_default());
         self.any = self.advance()?;
         if !self.any && !self.is_last_whole()? {
             self.cut = Some(Row::of_text(&self.before).place);
@@ -175,20 +163,14 @@ impl RowSource for Lines {
     }
 
     fn warnings(&mut self) -> Vec<Warning> {
-        self.cut
-            .map(|place| Warning::CutFile { line: place })
-            .into_iter()
-            .collect()
+        self.cut.map(|place| Warning::CutFile { line: place }).into_iter().collect()
     }
 }
 
 fn csv_error(path: &Path, error: csv::Error) -> RecordingError {
     let line = error.position().map_or(1, csv::Position::line);
     match error.into_kind() {
-        csv::ErrorKind::Io(reason) => RecordingError::Read {
-            path: path.to_owned(),
-            reason,
-        },
+        csv::ErrorKind::Io(reason) => RecordingError::Read { path: path.to_owned(), reason },
         kind => RecordingError::Row {
             path: path.to_owned(),
             place: Place::Line(line),

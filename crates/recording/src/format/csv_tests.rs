@@ -36,10 +36,7 @@ fn read(text: &str) -> Result<Recording, RecordingError> {
 
 /// Without the names of the file's columns.
 fn without_origin(recording: Recording) -> Recording {
-    Recording {
-        origin: None,
-        ..recording
-    }
+    Recording { origin: None, ..recording }
 }
 
 fn refusal(text: &str) -> String {
@@ -58,10 +55,7 @@ fn what_is_written_reads_back_to_the_same_bits() {
 #[test]
 fn a_bad_file_is_refused_with_its_place() {
     let text = refusal("t,q_a,tau_a\n0,1,2\n1,x,2\n2,1,2\n");
-    assert!(
-        text.contains("r.csv:3: column \"q_a\" is \"x\", not a finite number; delete the row"),
-        "{text}"
-    );
+    assert!(text.contains("r.csv:3: column \"q_a\" is \"x\", not a finite number; delete the row"), "{text}");
     for bad in ["NaN", "", "inf", "-Infinity", "1e999", "1,5"] {
         let text = refusal(&format!("t;q_a;tau_a\n0;1;2\n1;1;{bad}\n2;1;2\n"));
         assert!(text.contains("r.csv:3: column \"tau_a\""), "{text}");
@@ -76,9 +70,7 @@ fn a_bad_file_is_refused_with_its_place() {
     // Separators after the last cell, as spreadsheets write them, are no cells.
     assert!(!refusal("t,q_a,tau_a\n0,1,2,,\n1,1,2,\n.5,1,2\n").contains("cells"));
     assert!(refusal("t,q_a,tau_a,q_a\n").contains("two columns \"q_a\""));
-    let gone = Recording::read(Path::new("/nowhere/r.csv"))
-        .expect_err("it is not there")
-        .to_string();
+    let gone = Recording::read(Path::new("/nowhere/r.csv")).expect_err("it is not there").to_string();
     assert!(gone.contains("/nowhere/r.csv: cannot be read"), "{gone}");
 }
 
@@ -91,30 +83,15 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
             assert!(found.contains(part), "\"{part}\" is missing from: {found}");
         }
     };
-    let comma = [
-        "r.csv:2: column \"t\" is \"0,5\", a number with a decimal comma",
-        "decimal point",
-    ];
+    let comma = ["r.csv:2: column \"t\" is \"0,5\", a number with a decimal comma", "decimal point"];
     says("t;q_a;tau_a\n0,5;1,5;2,3\n1,5;1,5;2,3\n", &comma);
-    says(
-        "t,q_a,tau_a\n\"0,5\",\"1,5\",\"2,3\"\n\"1,5\",\"1,5\",\"2,3\"\n",
-        &comma,
-    );
-    says(
-        "t,q_a,tau_a\n0,5,1,5,2,3\n1,5,1,5,2,3\n",
-        &["r.csv:2", "6 cells", "decimal commas?"],
-    );
-    says(
-        "0,0.1,0.2\n1,0.1,0.2\n2,0.1,0.2\n",
-        &["r.csv:1: the first line holds numbers", "put a header above it"],
-    );
+    says("t,q_a,tau_a\n\"0,5\",\"1,5\",\"2,3\"\n\"1,5\",\"1,5\",\"2,3\"\n", &comma);
+    says("t,q_a,tau_a\n0,5,1,5,2,3\n1,5,1,5,2,3\n", &["r.csv:2", "6 cells", "decimal commas?"]);
+    says("0,0.1,0.2\n1,0.1,0.2\n2,0.1,0.2\n", &["r.csv:1: the first line holds numbers", "put a header above it"]);
     says("0,0;0,1;0,2\n", &["r.csv:1: the first line holds numbers"]);
     says("", &["r.csv:1: the file is empty", "q_<joint>"]);
     says("\u{FEFF}\r\n", &["r.csv:1: the file is empty"]);
-    says(
-        "<?xml version=\"1.0\"?>\n<robot/>",
-        &["r.csv:1: this is XML (a URDF?), not CSV", "--robot"],
-    );
+    says("<?xml version=\"1.0\"?>\n<robot/>", &["r.csv:1: this is XML (a URDF?), not CSV", "--robot"]);
     // Two files that were joined; the second one with a byte order mark.
     for mark in ["", "\u{FEFF}"] {
         says(
@@ -124,31 +101,15 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
     }
     says(
         "t,\"q_a\nerror: b\",\"tau_a\nerror: b\"\n0,1,2\n1,1,2\n",
-        &[
-            "r.csv",
-            "the name of the joint \"a\\nerror: b\" holds a line break",
-            "rename its columns",
-        ],
+        &["r.csv", "the name of the joint \"a\\nerror: b\" holds a line break", "rename its columns"],
     );
     says("t,q_a,tau_a\n0,1,2\n\0\n", &["r.csv:3: there is a zero byte", "UTF-8"]);
-    says(
-        "t,q_a,tau_a\n0,1,2\n1,\"1,2\n2,1,2\n3,1,2\n",
-        &["r.csv:3: a quotation mark is not closed"],
-    );
+    says("t,q_a,tau_a\n0,1,2\n1,\"1,2\n2,1,2\n3,1,2\n", &["r.csv:3: a quotation mark is not closed"]);
     for far in ["1e308", "-1e308", "2e12"] {
-        says(
-            &format!("t,q_a,tau_a\n0,1,2\n1,{far},2\n2,1,2\n"),
-            &["r.csv:3: column \"q_a\" is", "far beyond"],
-        );
-        says(
-            &format!("t,q_a,tau_a\n0,1,2\n{far}000,1,2\n"),
-            &["r.csv:3: column \"t\""],
-        );
+        says(&format!("t,q_a,tau_a\n0,1,2\n1,{far},2\n2,1,2\n"), &["r.csv:3: column \"q_a\" is", "far beyond"]);
+        says(&format!("t,q_a,tau_a\n0,1,2\n{far}000,1,2\n"), &["r.csv:3: column \"t\""]);
     }
-    says(
-        "t,q_a,tau_a\n1e-300,1,2\n0,1,2\n1,1,2\n",
-        &["r.csv:3: time runs back, from 1e-300 s"],
-    );
+    says("t,q_a,tau_a\n1e-300,1,2\n0,1,2\n1,1,2\n", &["r.csv:3: time runs back, from 1e-300 s"]);
     let folder = folder();
     let latin = write(&folder, "");
     std::fs::write(&latin, b"t,q_\xE9,tau_\xE9\n0,1,2\n1,1,2\n").expect("it writes");
@@ -160,10 +121,7 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
         let path = write(&folder, "");
         std::fs::write(&path, bytes).expect("it writes");
         let found = Recording::read(&path).expect_err("it is refused").to_string();
-        assert!(
-            found.contains("r.csv:1: the text is UTF-16; save it as UTF-8"),
-            "{found}"
-        );
+        assert!(found.contains("r.csv:1: the text is UTF-16; save it as UTF-8"), "{found}");
     }
     let found = Recording::read(folder.path()).expect_err("it is refused").to_string();
     assert!(found.contains("it is a folder"), "{found}");
@@ -191,11 +149,7 @@ fn a_file_cut_in_its_last_row_gives_what_is_whole() {
         // Without its newline alone, the last row is whole still.
         let rows = if cut == 1 { 3 } else { 2 };
         assert_eq!(read.len(), rows, "cut by {cut}");
-        assert_eq!(
-            read.warnings.contains(&Warning::CutFile { line: Place::Line(4) }),
-            cut > 1,
-            "cut by {cut}"
-        );
+        assert_eq!(read.warnings.contains(&Warning::CutFile { line: Place::Line(4) }), cut > 1, "cut by {cut}");
     }
     assert!(refusal("t,q_a,tau_a\n0,1,2\n1,x,2\n2,1,2").contains("r.csv:3"));
 }
@@ -204,10 +158,7 @@ fn a_file_cut_in_its_last_row_gives_what_is_whole() {
 fn a_duplicated_row_is_left_out() {
     let read = read("t,q_a,tau_a\n0,1,2\n1,1,2\n1,1,2\n2,1,2\n").expect("it reads");
     assert_eq!(read.time, [0.0, 1.0, 2.0]);
-    let expected = Warning::Duplicates {
-        rows: 1,
-        line: Place::Line(4),
-    };
+    let expected = Warning::Duplicates { rows: 1, line: Place::Line(4) };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
 }
 
@@ -216,18 +167,12 @@ fn rows_with_one_stamp_keep_their_order() {
     let read = read("t,q_a,tau_a\n0,1,2\n1,1,2\n1,2,2\n2,1,2\n").expect("it reads");
     assert_eq!((read.len(), &read.q[0][..]), (4, &[1.0, 1.0, 2.0, 1.0][..]));
     assert!(read.time.is_sorted_by(|a, b| a < b), "{:?}", read.time);
-    let expected = Warning::EqualStamps {
-        rows: 1,
-        line: Place::Line(4),
-    };
+    let expected = Warning::EqualStamps { rows: 1, line: Place::Line(4) };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
     // The rows of two sources in turn are no recording.
     let pair = |k: usize| format!("{k},1,2\n{k},2,2\n");
     let text = refusal(&("t,q_a,tau_a\n".to_owned() + &(0..10).map(pair).collect::<String>()));
-    assert!(
-        text.contains("r.csv:3: 10 of 20 rows have the time of the row before"),
-        "{text}"
-    );
+    assert!(text.contains("r.csv:3: 10 of 20 rows have the time of the row before"), "{text}");
 }
 
 #[test]
@@ -241,15 +186,7 @@ fn runs_end_to_end_in_one_file_are_distinguished() {
     let read = read(&text).expect("two runs");
     assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
     assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
-    let found = |warning: &Warning| {
-        matches!(
-            warning,
-            Warning::ClockRestart {
-                line: Place::Line(102),
-                ..
-            }
-        )
-    };
+    let found = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: Place::Line(102), .. });
     assert!(read.warnings.iter().any(found), "{:?}", read.warnings);
 }
 
@@ -289,16 +226,7 @@ fn a_file_of_many_rows_is_read_as_means() {
     for (row, t) in read.time.iter().enumerate() {
         assert!((read.q[0][row] - t.sin()).abs() < 1e-5 && (read.tau[0][row] - t.cos()).abs() < 1e-5);
     }
-    let thinned = |warning: &Warning| {
-        matches!(
-            warning,
-            Warning::Thinned {
-                rows: 5000,
-                kept: 625,
-                ..
-            }
-        )
-    };
+    let thinned = |warning: &Warning| matches!(warning, Warning::Thinned { rows: 5000, kept: 625, .. });
     assert!(read.warnings.iter().any(thinned), "{:?}", read.warnings);
     assert!(read.others.is_empty());
     // A bad value is found wherever it stands.
@@ -366,10 +294,7 @@ fn spaces_and_the_other_forms_of_time_are_read() {
         assert_eq!(read.time[1] - read.time[0], 1.0, "{stamps:?}");
     }
     let bad = refusal("t,q_a,tau_a\nyesterday,1,2\n1,1.5,2.5\n");
-    assert!(
-        bad.contains("r.csv:2: column \"t\" is \"yesterday\"") && bad.contains("ISO 8601"),
-        "{bad}"
-    );
+    assert!(bad.contains("r.csv:2: column \"t\" is \"yesterday\"") && bad.contains("ISO 8601"), "{bad}");
     let named = refusal("stamp,q_a,tau_a\n0,1,2\n1,1.5,2.5\n");
     assert!(named.contains("is \"stamp\" meant?"), "{named}");
 }

@@ -57,9 +57,7 @@ fn above_header(text: &[u8]) -> Option<String> {
     let is_header = |line: &str| names(line).into_iter().any(|count| count >= LEAST_COLUMNS);
     let (_, header) = lines.take(MOST_TITLE_LINES).find(|(line, _)| is_header(line))?;
     let shown: String = first.trim().chars().take(40).collect();
-    Some(format!(
-        "\"{shown}\" is no header, and line {header} may be one; delete the lines above it"
-    ))
+    Some(format!("\"{shown}\" is no header, and line {header} may be one; delete the lines above it"))
 }
 
 /// The least number of columns of a recording, and the largest number of lines of text above a header that are recognised.
@@ -82,10 +80,7 @@ pub fn comments(start: &[u8]) -> (Comments, &[u8]) {
     let mut rest = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
     let mut last: Option<&[u8]> = None;
     while rest.starts_with(b"#") {
-        let end = rest
-            .iter()
-            .position(|&byte| byte == b'\n')
-            .map_or(rest.len(), |end| end + 1);
+        let end = rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |end| end + 1);
         last = Some(&rest[1..end]);
         rest = &rest[end..];
     }
@@ -164,13 +159,7 @@ pub struct Squeezed<R> {
 impl<R: Read> Squeezed<R> {
     /// The reader of the original text.
     pub fn new(inner: R) -> Self {
-        Self {
-            inner,
-            due: false,
-            begun: false,
-            buffer: Vec::new(),
-            given: 0,
-        }
+        Self { inner, due: false, begun: false, buffer: Vec::new(), given: 0 }
     }
 
     fn take(&mut self, byte: u8) {

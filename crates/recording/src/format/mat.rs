@@ -118,9 +118,7 @@ fn variable(kind: u32, content: &[u8], big_endian: bool) -> Result<Option<Variab
     if STRUCTURES.contains(&class) {
         return Ok(Some(Variable::Structure(String::from_utf8_lossy(name).into_owned())));
     }
-    let sizes = Bytes::new(sizes, big_endian)
-        .integers(4, true, sizes.len() / 4)
-        .ok_or(DAMAGED)?;
+    let sizes = Bytes::new(sizes, big_endian).integers(4, true, sizes.len() / 4).ok_or(DAMAGED)?;
     let (&[rows, columns], false, true) = (&sizes[..], is_complex, NUMERIC.contains(&class)) else {
         return Ok(None);
     };

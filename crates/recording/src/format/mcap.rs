@@ -70,21 +70,13 @@ struct Reader<'a> {
 /// [`RecordingError::Format`] if it is damaged.
 pub fn read_into(input: &Input, options: &Options<'_>, states: &mut JointStates) -> Result<Found, RecordingError> {
     let mut file = input.to_file()?;
-    let failed = |reason: std::io::Error| RecordingError::Read {
-        path: input.path.clone(),
-        reason,
-    };
+    let failed = |reason: std::io::Error| RecordingError::Read { path: input.path.clone(), reason };
     let size = file.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut at = MAGIC.len() as u64;
     file.seek(SeekFrom::Start(at)).map_err(failed)?;
     let mut file = BufReader::new(file);
-    let mut reader = Reader {
-        options,
-        states,
-        schemas: HashMap::new(),
-        channels: HashMap::new(),
-        room: most_expanded(size),
-    };
+    let mut reader =
+        Reader { options, states, schemas: HashMap::new(), channels: HashMap::new(), room: most_expanded(size) };
     let mut is_whole = false;
     while size - at >= 9 {
         let mut head = [0; 9];
@@ -125,11 +117,7 @@ pub fn no_states(mut topics: Vec<String>, options: &Options<'_>) -> String {
     topics.dedup();
     let more = if topics.len() > 8 { ", …" } else { "" };
     topics.truncate(8);
-    let of = if options.topics.is_empty() {
-        String::new()
-    } else {
-        format!(" in {}", options.topics.join(", "))
-    };
+    let of = if options.topics.is_empty() { String::new() } else { format!(" in {}", options.topics.join(", ")) };
     if topics.is_empty() {
         return format!(
             "there are no whole messages{of}: was anything recorded, or was the file cut within its first chunk? A recorder \

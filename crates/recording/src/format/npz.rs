@@ -47,9 +47,7 @@ fn read(data: &[u8]) -> Result<Vec<Array>, String> {
             rawzip::CompressionMethod::STORE => Box::new(local.data()),
             rawzip::CompressionMethod::DEFLATE => Box::new(flate2::bufread::DeflateDecoder::new(local.data())),
             other => {
-                return Err(format!(
-                    "{name} has the compression {other:?}; save it with numpy.savez"
-                ));
+                return Err(format!("{name} has the compression {other:?}; save it with numpy.savez"));
             }
         };
         let mut content = local.verifying_reader(content).take(room + 1);
@@ -76,16 +74,10 @@ fn array(name: &str, data: &[u8]) -> Result<Option<Array>, String> {
     let damaged = || format!("{name} is damaged or cut; save or copy the archive again");
     let mut bytes = Bytes::new(data, false);
     let header = header(&mut bytes).ok_or_else(damaged)?;
-    let descr = between(header, "'descr':", ",")
-        .ok_or_else(damaged)?
-        .trim_matches(['\'', ' ']);
+    let descr = between(header, "'descr':", ",").ok_or_else(damaged)?.trim_matches(['\'', ' ']);
     let by_rows = between(header, "'fortran_order':", ",").ok_or_else(damaged)? == "False";
     let shape = between(header, "'shape':", ")").ok_or_else(damaged)?;
-    let sizes = shape
-        .trim_matches(['(', ' '])
-        .split(',')
-        .map(str::trim)
-        .filter(|size| !size.is_empty());
+    let sizes = shape.trim_matches(['(', ' ']).split(',').map(str::trim).filter(|size| !size.is_empty());
     let sizes: Vec<usize> = sizes.map(str::parse).collect::<Result<_, _>>().map_err(|_| damaged())?;
     let shape = match sizes[..] {
         [] => (1, 1),
@@ -104,12 +96,7 @@ fn array(name: &str, data: &[u8]) -> Result<Option<Array>, String> {
             Ok(None)
         };
     };
-    Ok(Some(Array {
-        name: name.to_owned(),
-        shape,
-        by_rows,
-        values: values.ok_or_else(damaged)?,
-    }))
+    Ok(Some(Array { name: name.to_owned(), shape, by_rows, values: values.ok_or_else(damaged)? }))
 }
 
 /// The text of the header, a Python dictionary.

@@ -11,10 +11,7 @@ fn checked(page: Option<Page>) -> Result<Option<Page>> {
     if let Some(Page::DictionaryPage { buf, num_values, .. }) = &page
         && u64::from(*num_values) > 8 * buf.len() as u64
     {
-        return Err(ParquetError::General(format!(
-            "a dictionary of {num_values} values has {} bytes",
-            buf.len()
-        )));
+        return Err(ParquetError::General(format!("a dictionary of {num_values} values has {} bytes", buf.len())));
     }
     Ok(page)
 }

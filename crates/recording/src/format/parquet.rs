@@ -131,23 +131,14 @@ fn columns(file: File) -> Result<Vec<(String, Column)>, String> {
     let reader = SerializedFileReader::new(Guarded(file)).map_err(damaged)?;
     // The library does not check the positions in the footer.
     let groups = reader.metadata().row_groups().iter();
-    if !groups
-        .flat_map(RowGroupMetaData::columns)
-        .all(|column| is_within(column, size))
-    {
+    if !groups.flat_map(RowGroupMetaData::columns).all(|column| is_within(column, size)) {
         return Err("its footer is damaged; write or copy it again".to_owned());
     }
-    let mut columns = reader
-        .metadata()
-        .row_groups()
-        .iter()
-        .flat_map(RowGroupMetaData::columns);
+    let mut columns = reader.metadata().row_groups().iter().flat_map(RowGroupMetaData::columns);
     if columns.any(|column| matches!(column.compression(), Compression::BROTLI(_) | Compression::LZO)) {
-        return Err(
-            "its compression (Brotli or LZO) is not read; write it with another, for example \
+        return Err("its compression (Brotli or LZO) is not read; write it with another, for example \
              to_parquet(\"run.parquet\", compression=\"zstd\")"
-                .to_owned(),
-        );
+            .to_owned());
     }
     let file = reader.metadata().file_metadata();
     if file.num_rows() == 0 {
@@ -198,10 +189,7 @@ fn columns(file: File) -> Result<Vec<(String, Column)>, String> {
 /// The columns that pandas wrote from time differences, with their unit (ns). Parquet has no type for them; pandas describes its
 /// columns in the file's metadata.
 fn durations(metadata: &[KeyValue]) -> Vec<(String, i64)> {
-    let text = metadata
-        .iter()
-        .find(|pair| pair.key == "pandas")
-        .and_then(|pair| pair.value.as_deref());
+    let text = metadata.iter().find(|pair| pair.key == "pandas").and_then(|pair| pair.value.as_deref());
     let described: Option<Pandas> = text.and_then(|text| serde_json::from_str(text).ok());
     let unit = |kind: &str| {
         Some(match kind {
@@ -274,12 +262,12 @@ fn read_leaf(
     room: &mut usize,
 ) -> Result<(), String> {
     match column {
-        ColumnReader::BoolColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| {
-            (f64::from(u8::from(*value)), i64::from(*value))
-        }),
-        ColumnReader::Int32ColumnReader(reader) => read_typed(reader, descriptor, leaf, room, |value| {
-            (f64::from(*value), i64::from(*value))
-        }),
+        ColumnReader::BoolColumnReader(reader) => {
+            read_typed(reader, descriptor, leaf, room, |value| (f64::from(u8::from(*value)), i64::from(*value)))
+        }
+        ColumnReader::Int32ColumnReader(reader) => {
+            read_typed(reader, descriptor, leaf, room, |value| (f64::from(*value), i64::from(*value)))
+        }
         ColumnReader::Int64ColumnReader(reader) => {
             read_typed(reader, descriptor, leaf, room, |value| (*value as f64, *value))
         }
@@ -316,11 +304,8 @@ fn read_typed<T: DataType>(
             check_lists(&leaf.name, width, &repetitions)?;
         }
         let mut values = values.iter();
-        let is_there = |level: usize| {
-            definitions
-                .get(level)
-                .is_none_or(|definition| *definition == descriptor.max_def_level())
-        };
+        let is_there =
+            |level: usize| definitions.get(level).is_none_or(|definition| *definition == descriptor.max_def_level());
         for level in 0..levels {
             let value = is_there(level).then(|| values.next()).flatten();
             leaf.push(value.map(&both))?;
@@ -330,11 +315,7 @@ fn read_typed<T: DataType>(
 
 /// Checks that all lists have the same length.
 fn check_lists(name: &str, width: &mut usize, repetitions: &[i16]) -> Result<(), String> {
-    let mut starts = repetitions
-        .iter()
-        .enumerate()
-        .filter(|(_, level)| **level == 0)
-        .map(|(at, _)| at);
+    let mut starts = repetitions.iter().enumerate().filter(|(_, level)| **level == 0).map(|(at, _)| at);
     let mut from = starts.next().unwrap_or(0);
     for to in starts.chain([repetitions.len()]) {
         let length = to - from;
@@ -363,10 +344,7 @@ impl Leaf {
             }
             (Values::Nanos(values, unit), Some((_, whole))) => values.push(whole.saturating_mul(*unit)),
             (Values::Nanos(..), None) => {
-                return Err(format!(
-                    "column \"{}\" lacks a time somewhere; fill it or leave the row out",
-                    self.name
-                ));
+                return Err(format!("column \"{}\" lacks a time somewhere; fill it or leave the row out", self.name));
             }
         }
         Ok(())

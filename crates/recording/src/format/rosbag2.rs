@@ -35,18 +35,13 @@ impl Format for Rosbag2 {
             }
             return states.into_table(&input, NAME, options.topics);
         }
-        let unreadable = |reason| RecordingError::Read {
-            path: input.path.clone(),
-            reason,
-        };
+        let unreadable = |reason| RecordingError::Read { path: input.path.clone(), reason };
         let mut files = Vec::new();
         for entry in std::fs::read_dir(&input.path).map_err(unreadable)? {
             let path = entry.map_err(unreadable)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             // The journal and the index of a database are not files of the bag.
-            let is_part = [".db3", ".db3.zstd", ".mcap", ".mcap.zstd"]
-                .iter()
-                .any(|end| name.ends_with(end));
+            let is_part = [".db3", ".db3.zstd", ".mcap", ".mcap.zstd"].iter().any(|end| name.ends_with(end));
             if is_part && path.is_file() {
                 refuse_outside(&input, &path)?;
                 files.push(path);
@@ -80,9 +75,7 @@ impl Format for Rosbag2 {
 /// What a bag's files are sorted by: NAME_2.db3 comes before NAME_10.db3.
 fn part_number(path: &Path) -> (String, u64, PathBuf) {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let stem = [".zstd", ".db3", ".mcap"]
-        .iter()
-        .fold(&*name, |name, end| name.strip_suffix(end).unwrap_or(name));
+    let stem = [".zstd", ".db3", ".mcap"].iter().fold(&*name, |name, end| name.strip_suffix(end).unwrap_or(name));
     let start = stem.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let number = stem[start.len()..].parse().unwrap_or(0);
     (start.to_owned(), number, path.to_owned())
@@ -104,9 +97,7 @@ fn no_bag(folder: &Path) -> String {
         entries.sort();
         let has_end = |path: &&PathBuf| {
             let name = path.to_string_lossy();
-            [".parquet", ".db3", ".mcap", ".csv", ".npz", ".mat"]
-                .iter()
-                .any(|end| name.ends_with(end))
+            [".parquet", ".db3", ".mcap", ".csv", ".npz", ".mat"].iter().any(|end| name.ends_with(end))
         };
         if let Some(first) = entries.iter().find(has_end) {
             return format!(
@@ -114,11 +105,7 @@ fn no_bag(folder: &Path) -> String {
                 first.display()
             );
         }
-        level = entries
-            .into_iter()
-            .filter(|path| path.is_dir() && !path.is_symlink())
-            .take(FOLDERS)
-            .collect();
+        level = entries.into_iter().filter(|path| path.is_dir() && !path.is_symlink()).take(FOLDERS).collect();
     }
     "it is a folder without .db3 or .mcap files, and so no bag; give a recording's file or a bag's folder".to_owned()
 }
@@ -130,10 +117,7 @@ fn refuse_outside(input: &Input, path: &Path) -> Result<(), RecordingError> {
         return Ok(());
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    Err(input.error(
-        NAME,
-        format!("{name} is a link that leads out of the bag's folder; copy the file into it"),
-    ))
+    Err(input.error(NAME, format!("{name} is a link that leads out of the bag's folder; copy the file into it")))
 }
 
 /// Reads the joint states of a database.
@@ -142,18 +126,13 @@ fn database(input: &Input, options: &Options<'_>, states: &mut JointStates) -> R
     let copy = if input.is_unchanged() {
         None
     } else {
-        let failed = |reason| RecordingError::Read {
-            path: input.path.clone(),
-            reason,
-        };
+        let failed = |reason| RecordingError::Read { path: input.path.clone(), reason };
         let mut copy = tempfile::NamedTempFile::new().map_err(failed)?;
         std::io::copy(&mut input.to_file()?, &mut copy).map_err(failed)?;
         copy.flush().map_err(failed)?;
         Some(copy)
     };
-    let path = copy
-        .as_ref()
-        .map_or(input.path.as_path(), tempfile::NamedTempFile::path);
+    let path = copy.as_ref().map_or(input.path.as_path(), tempfile::NamedTempFile::path);
     let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
     match messages(path, most_expanded(size), options, states) {
         Ok(topics) => Ok(Found { topics, warning: None }),
@@ -195,23 +174,15 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
     }
     let mut query = database.prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY name")?;
     let topics = query.query_map([], |row| {
-        Ok((
-            row.get::<_, i64>(0)?,
-            row.get::<_, String>(1)?,
-            row.get::<_, String>(2)?,
-            row.get::<_, String>(3)?,
-        ))
+        Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?, row.get::<_, String>(2)?, row.get::<_, String>(3)?))
     })?;
     let topics = topics.collect::<Result<Vec<_>, _>>()?;
     let is_wanted = |(_, topic, kind, encoding): &&(i64, String, String, String)| {
         let is_chosen = options.topics.is_empty() || options.topics.contains(topic);
         TYPES.contains(&kind.as_str()) && encoding == "cdr" && is_chosen
     };
-    let wanted: HashMap<i64, &str> = topics
-        .iter()
-        .filter(is_wanted)
-        .map(|(id, topic, ..)| (*id, topic.as_str()))
-        .collect();
+    let wanted: HashMap<i64, &str> =
+        topics.iter().filter(is_wanted).map(|(id, topic, ..)| (*id, topic.as_str())).collect();
     // In the order in which they were recorded, all topics together.
     let mut query = database.prepare("SELECT topic_id, timestamp, data FROM messages")?;
     let mut room = most;
@@ -219,9 +190,7 @@ fn messages(path: &Path, most: u64, options: &Options<'_>, states: &mut JointSta
     while let Some(row) = rows.next()? {
         if let Some(topic) = wanted.get(&row.get::<_, i64>(0)?) {
             let (logged, data) = (row.get::<_, i64>(1)?, row.get_ref(2)?);
-            let data = data
-                .as_blob()
-                .map_err(|_| Failure::Message(format!("a message of {topic} is no blob")))?;
+            let data = data.as_blob().map_err(|_| Failure::Message(format!("a message of {topic} is no blob")))?;
             if data.starts_with(ZSTD) {
                 // The compression mode "message".
                 let expanded = expand(data, &mut room).map_err(Failure::Message)?;

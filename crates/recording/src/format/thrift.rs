@@ -8,10 +8,7 @@ const DEEPEST: usize = 64;
 /// Whether a list of the structure in `bytes` has more items than bytes follow. Every item takes at least one byte. Other
 /// damage is left to the library.
 pub fn has_endless_list(bytes: &[u8]) -> bool {
-    let mut walk = Walk {
-        rest: bytes,
-        is_endless: false,
-    };
+    let mut walk = Walk { rest: bytes, is_endless: false };
     walk.structure(0);
     walk.is_endless
 }
@@ -76,11 +73,7 @@ impl Walk<'_> {
             }
             9 | 10 => {
                 let head = self.byte()?;
-                let count = if head >> 4 == 15 {
-                    self.number()?
-                } else {
-                    u64::from(head >> 4)
-                };
+                let count = if head >> 4 == 15 { self.number()? } else { u64::from(head >> 4) };
                 self.items(count, &[head & 15], depth + 1)
             }
             11 => {

@@ -13,11 +13,7 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
         "version 7.3 (HDF5) is not read; save it again from MATLAB: save(\"run.mat\", \"t\", \"q\", \"tau\", \"-v7\"); or from Python: \
          scipy.io.savemat(\"run.mat\", {\"t\": t, \"q\": q, \"tau\": tau})",
     ),
-    (
-        b"\x89HDF\r\n",
-        "HDF5",
-        "it is not read; save its arrays with numpy.savez, or its table as Parquet or CSV",
-    ),
+    (b"\x89HDF\r\n", "HDF5", "it is not read; save its arrays with numpy.savez, or its table as Parquet or CSV"),
     (
         b"#ROSBAG",
         "a bag of ROS 1",
@@ -30,11 +26,7 @@ const KNOWN: &[(&[u8], &str, &str)] = &[
     ),
     (b"\xfd7zXZ\0", "xz", "it is not read; expand it: xz -d FILE"),
     (b"BZh", "bzip2", "it is not read; expand it: bzip2 -d FILE"),
-    (
-        b"\x93NUMPY",
-        ".npy",
-        "a single array has no names for its columns; save t, q and tau with numpy.savez",
-    ),
+    (b"\x93NUMPY", ".npy", "a single array has no names for its columns; save t, q and tau with numpy.savez"),
 ];
 
 /// The format that is recognised but not read.
@@ -52,16 +44,12 @@ fn is_mat_4(head: &[u8]) -> bool {
     else {
         return false;
     };
-    let name = usize::try_from(length)
-        .ok()
-        .and_then(|length| head.get(20..20 + length));
+    let name = usize::try_from(length).ok().and_then(|length| head.get(20..20 + length));
     let is_name = |name: &[u8]| {
         let (end, letters) = name.split_last().unwrap_or((&1, &[]));
         *end == 0
             && !letters.is_empty()
-            && letters
-                .iter()
-                .all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
+            && letters.iter().all(|letter| letter.is_ascii_alphanumeric() || *letter == b'_')
     };
     kind < 60 && rows > 0 && columns > 0 && complex < 2 && name.is_some_and(is_name)
 }
@@ -83,10 +71,8 @@ fn known(head: &[u8]) -> Option<(&'static str, &'static str)> {
         return Some(("a Python pickle", remedy));
     }
     let mut text = head.iter().filter(|letter| !letter.is_ascii_whitespace());
-    let is_json = matches!(
-        (text.next(), text.next()),
-        (Some(b'{'), Some(b'"' | b'}')) | (Some(b'['), Some(b'{' | b'['))
-    );
+    let is_json =
+        matches!((text.next(), text.next()), (Some(b'{'), Some(b'"' | b'}')) | (Some(b'['), Some(b'{' | b'[')));
     let remedy = "it is not read; save the table as Parquet or CSV: pandas.read_json(\"run.json\").to_csv(\"run.csv\", \
                   index=False), with lines=True for one object a line";
     is_json.then_some(("JSON", remedy))

@@ -83,10 +83,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
         add(FindingKind::TimeUnit, None, text.clone());
     }
     for joint in joints.iter().filter(|joint| joint.tau_range.0 == joint.tau_range.1) {
-        let text = format!(
-            "the torque is {} throughout; was it logged? Check its column",
-            joint.tau_range.0
-        );
+        let text = format!("the torque is {} throughout; was it logged? Check its column", joint.tau_range.0);
         add(FindingKind::NoTorque, Some(joint), text);
     }
     for (index, joint) in joints.iter().enumerate() {
@@ -101,25 +98,17 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
             velocity(joint, &mut add);
         }
         let reach = joint.q_range.0.abs().max(joint.q_range.1.abs());
-        let in_degrees = joint
-            .velocity_ratio
-            .is_some_and(|ratio| near(ratio.abs(), 1.0 / DEGREES));
+        let in_degrees = joint.velocity_ratio.is_some_and(|ratio| near(ratio.abs(), 1.0 / DEGREES));
         if reach > 4.0 * std::f64::consts::PI && !in_degrees {
             let text = format!(
                 "positions reach {}: degrees taken for radians, or millimetres for metres? Give q_unit in a column \
                  map; for a continuous joint this is normal",
-                if reach < 1e4 {
-                    format!("{reach:.1}")
-                } else {
-                    format!("{reach:.1e}")
-                }
+                if reach < 1e4 { format!("{reach:.1}") } else { format!("{reach:.1e}") }
             );
             add(FindingKind::Degrees, Some(joint), text);
         }
         let range = joint.tau_range.1 - joint.tau_range.0;
-        let coarse = joint
-            .tau_step
-            .filter(|&step| joint.moves && step > COARSE_TORQUE * range);
+        let coarse = joint.tau_step.filter(|&step| joint.moves && step > COARSE_TORQUE * range);
         if let Some(step) = coarse {
             let text = format!(
                 "the torque's step ({step:.2e}) is {:.0} % of its whole range, so that friction and other small effects come out too \
@@ -147,11 +136,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
             add(FindingKind::CoarseEncoder, Some(joint), text);
         }
     }
-    let still: Vec<&str> = joints
-        .iter()
-        .filter(|joint| !joint.moves)
-        .map(|joint| joint.joint.as_str())
-        .collect();
+    let still: Vec<&str> = joints.iter().filter(|joint| !joint.moves).map(|joint| joint.joint.as_str()).collect();
     if !still.is_empty() && still.len() < joints.len() {
         let text = format!(
             "{} {} not move, so that {} friction and drive cannot be identified",
@@ -178,17 +163,9 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
 
 /// "4.0 to 4.3 ms late", or early.
 fn lateness(least: f64, most: f64) -> String {
-    let (way, least, most) = if most <= 0.0 {
-        ("early", -most, -least)
-    } else {
-        ("late", least, most)
-    };
+    let (way, least, most) = if most <= 0.0 { ("early", -most, -least) } else { ("late", least, most) };
     let (least, most) = (format!("{:.1}", 1e3 * least), format!("{:.1}", 1e3 * most));
-    if least == most {
-        format!("{most} ms {way}")
-    } else {
-        format!("{least} to {most} ms {way}")
-    }
+    if least == most { format!("{most} ms {way}") } else { format!("{least} to {most} ms {way}") }
 }
 
 /// The unit of the stamps if it is not s: rows are too far apart for a drive, and the recorded velocities of all
@@ -225,20 +202,14 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
         }
         return;
     };
-    if ratio < 0.0
-        && joint
-            .velocity_correlation
-            .is_some_and(|correlation| correlation.abs() > 0.95)
-    {
+    if ratio < 0.0 && joint.velocity_correlation.is_some_and(|correlation| correlation.abs() > 0.95) {
         let text =
             "the recorded velocity has the sign opposite to the position's slope; invert one (sign in a column map)";
         add(FindingKind::VelocitySign, Some(joint), text.into());
     }
     let size = ratio.abs();
     // A filtered velocity is smaller than the slope if the motion is small and fast.
-    let clear = joint
-        .velocity_correlation
-        .is_some_and(|correlation| correlation.abs() > 0.98);
+    let clear = joint.velocity_correlation.is_some_and(|correlation| correlation.abs() > 0.98);
     let guess = if near(size, DEGREES) {
         "it is in deg/s, or the position in rad against it: give qd_unit = \"deg/s\" in a column map"
     } else if near(size, 1.0 / DEGREES) {

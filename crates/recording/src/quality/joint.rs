@@ -58,9 +58,8 @@ impl JointQuality {
         let q_step = measures::step(&recording.q[joint]);
         let tau_step = measures::step(&recording.tau[joint]);
         let q_noise = measures::noise(q, &regular.segments);
-        let mut speeds: Vec<f64> = measures::inner(&regular.segments, motion.side)
-            .map(|tick| motion.speed[tick].abs())
-            .collect();
+        let mut speeds: Vec<f64> =
+            measures::inner(&regular.segments, motion.side).map(|tick| motion.speed[tick].abs()).collect();
         let speed_max = quantile(&mut speeds, 1.0);
         let unsure = motion.gain * q_noise.max(q_step.unwrap_or(0.0) / 12.0_f64.sqrt());
         let range = high - low;
@@ -85,11 +84,7 @@ impl JointQuality {
             velocity_ratio: None,
             velocity_correlation: None,
             moves,
-            moving_share: if moves {
-                moving as f64 / speeds.len().max(1) as f64
-            } else {
-                0.0
-            },
+            moving_share: if moves { moving as f64 / speeds.len().max(1) as f64 } else { 0.0 },
             reversals: if moves { reversals(&motion.speed, slow) } else { 0 },
             plateaus: measures::plateaus(tau, &regular.segments, tau_step),
         }

@@ -8,11 +8,7 @@ pub const SAMPLES: usize = 100_000;
 
 /// The smallest and the largest value.
 pub fn range(values: &[f64]) -> (f64, f64) {
-    values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
-            (low.min(value), high.max(value))
-        })
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
 }
 
 /// Ticks with `side` neighbours on both sides in their segment, evenly thinned to [`SAMPLES`].
@@ -59,9 +55,7 @@ pub fn step(values: &[f64]) -> Option<f64> {
     steps.sort_by(f64::total_cmp);
     let least = 1e-7 * (high - low);
     // The smallest difference may be several steps.
-    (1..=6)
-        .find_map(|part| multiples(&steps, steps[0] / f64::from(part)))
-        .filter(|step| *step > least)
+    (1..=6).find_map(|part| multiples(&steps, steps[0] / f64::from(part))).filter(|step| *step > least)
 }
 
 /// The step near `step` that sorted `steps` are multiples of, if all but a few are.

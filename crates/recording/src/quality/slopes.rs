@@ -27,10 +27,6 @@ impl Slopes {
                 speed[k] = rise / (squares * period);
             }
         }
-        Self {
-            speed,
-            side,
-            gain: 1.0 / (squares.sqrt() * period),
-        }
+        Self { speed, side, gain: 1.0 / (squares.sqrt() * period) }
     }
 }

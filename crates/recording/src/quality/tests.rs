@@ -6,10 +6,7 @@ use super::*;
 fn good() -> Recording {
     let time: Vec<f64> = (0..5000).map(|k| f64::from(k) * 0.004).collect();
     let of = |f: &dyn Fn(f64, f64) -> f64| -> Vec<Vec<f64>> {
-        [1.1, 1.7, 2.9]
-            .iter()
-            .map(|w| time.iter().map(|t| f(*w, *t)).collect())
-            .collect()
+        [1.1, 1.7, 2.9].iter().map(|w| time.iter().map(|t| f(*w, *t)).collect()).collect()
     };
     let step = 1e-5;
     Recording {
@@ -29,10 +26,7 @@ fn quality(recording: &Recording) -> Quality {
 
 fn kinds(recording: &Recording) -> Vec<(FindingKind, Option<String>)> {
     let findings = quality(recording).findings;
-    findings
-        .into_iter()
-        .map(|finding| (finding.kind, finding.joint))
-        .collect()
+    findings.into_iter().map(|finding| (finding.kind, finding.joint)).collect()
 }
 
 const LATE: (FindingKind, Option<String>) = (FindingKind::VelocityLate, None);
@@ -40,17 +34,10 @@ const LATE: (FindingKind, Option<String>) = (FindingKind::VelocityLate, None);
 #[test]
 fn a_good_recording_is_measured() {
     let quality = quality(&good());
-    assert_eq!(
-        (quality.rows, quality.rate, quality.lost_rows, quality.segments),
-        (5000, 250.0, 0, 1)
-    );
+    assert_eq!((quality.rows, quality.rate, quality.lost_rows, quality.segments), (5000, 250.0, 0, 1));
     for (joint, w) in quality.joints.iter().zip([1.1, 1.7, 2.9]) {
         assert!((joint.q_step.expect("it is quantised") / 1e-5 - 1.0).abs() < 1e-3);
-        assert!(
-            (joint.velocity_lag.expect("it moves") - 0.0065).abs() < 2e-4,
-            "{:?}",
-            joint.velocity_lag
-        );
+        assert!((joint.velocity_lag.expect("it moves") - 0.0065).abs() < 2e-4, "{:?}", joint.velocity_lag);
         assert!((joint.velocity_ratio.expect("it moves") - 1.0).abs() < 0.01);
         assert!((joint.speed_max / (0.8 * w) - 1.0).abs() < 0.02);
         assert!(joint.moves && joint.moving_share > 0.9);
@@ -76,10 +63,7 @@ fn flaws_are_found_on_their_joint() {
     };
     assert_eq!(flawed(&|r| qd(r, -1.0)), [(FindingKind::VelocitySign, b()), LATE]);
     assert_eq!(flawed(&|r| qd(r, 57.3)), [(FindingKind::VelocityUnit, b()), LATE]);
-    assert_eq!(
-        flawed(&|r| scale(&mut r.q[1], 57.3)),
-        [(FindingKind::VelocityUnit, b()), LATE]
-    );
+    assert_eq!(flawed(&|r| scale(&mut r.q[1], 57.3)), [(FindingKind::VelocityUnit, b()), LATE]);
     let swap = |r: &mut Recording| r.qd.as_mut().expect("it is there").swap(1, 2);
     let c = Some("c".to_owned());
     let expected = [(FindingKind::VelocitySwapped, b()), (FindingKind::VelocitySwapped, c)];

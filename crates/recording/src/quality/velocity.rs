@@ -21,11 +21,7 @@ fn correlate(first: &[f64], second: &[f64], ticks: &[usize], lag: isize) -> (f64
         xy += x * y;
         yy += y * y;
     }
-    if xx > 0.0 && yy > 0.0 {
-        (xy / (xx * yy).sqrt(), xy / xx)
-    } else {
-        (0.0, 0.0)
-    }
+    if xx > 0.0 && yy > 0.0 { (xy / (xx * yy).sqrt(), xy / xx) } else { (0.0, 0.0) }
 }
 
 /// The largest correlation at any lag up to ±`limit`.

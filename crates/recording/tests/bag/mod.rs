@@ -27,13 +27,7 @@ pub fn motion(t: f64) -> [f64; 2] {
 fn message(topic: &'static str, stamp: f64, fields: [Vec<f64>; 3]) -> Message {
     let joint = "elbow";
     let stamp = EPOCH as i64 * 1_000_000_000 + (stamp * 1e9).round() as i64;
-    Message {
-        topic,
-        joint,
-        stamp,
-        logged: stamp,
-        fields,
-    }
+    Message { topic, joint, stamp, logged: stamp, fields }
 }
 
 /// Position and effort at `t` (s), stamped `stamp` (s).
@@ -126,10 +120,7 @@ pub fn write_mcap(path: &Path, messages: &[Message]) {
         file.extend(body);
     };
     let one = 1_u16.to_le_bytes();
-    record(
-        3,
-        &[&one, &text("sensor_msgs/msg/JointState"), &text("ros2msg"), &text("")],
-    );
+    record(3, &[&one, &text("sensor_msgs/msg/JointState"), &text("ros2msg"), &text("")]);
     let topics = topics(messages);
     for (topic, id) in topics.iter().zip(1_u16..) {
         record(4, &[&id.to_le_bytes(), &one, &text(topic), &text("cdr"), &[0; 4]]);
@@ -153,8 +144,7 @@ pub fn write_database(path: &Path, messages: &[Message]) {
     let topics = topics(messages);
     for (topic, id) in topics.iter().zip(1_u16..) {
         let row = params![id, topic, "sensor_msgs/msg/JointState", "cdr"];
-        all.execute("INSERT INTO topics VALUES (?1, ?2, ?3, ?4)", row)
-            .expect("it is written");
+        all.execute("INSERT INTO topics VALUES (?1, ?2, ?3, ?4)", row).expect("it is written");
     }
     let insert = "INSERT INTO messages (topic_id, timestamp, data) VALUES (?1, ?2, ?3)";
     let mut insert = all.prepare(insert).expect("it is prepared");

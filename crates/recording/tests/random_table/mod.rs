@@ -74,18 +74,10 @@ fn accidents(bad: bool) -> impl Strategy<Value = Accident> {
         at().prop_map(|at| Accident::Twice { at }),
         at().prop_map(|at| Accident::Restart { at }),
         at().prop_map(|at| Accident::Swapped { at }),
-        (
-            at(),
-            column,
-            prop::sample::select(vec![f64::NAN, f64::INFINITY, 1e300, -1e9, 1e-320])
-        )
+        (at(), column, prop::sample::select(vec![f64::NAN, f64::INFINITY, 1e300, -1e9, 1e-320]))
             .prop_map(|(at, column, value)| Accident::Spike { at, column, value }),
     ];
-    if bad {
-        prop_oneof![5 => good, 1 => wrong].boxed()
-    } else {
-        good.boxed()
-    }
+    if bad { prop_oneof![5 => good, 1 => wrong].boxed() } else { good.boxed() }
 }
 
 fn happen(rows: &mut Vec<Vec<f64>>, accident: &Accident) {
@@ -151,9 +143,7 @@ pub fn tables(bad: bool) -> impl Strategy<Value = Table> {
         .prop_map(|(joints, length, rate, jitter, start, accidents, seed)| {
             let mut random = u64::from(seed);
             let mut unit = move || {
-                random = random
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
+                random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 (random >> 33) as f64 / f64::from(1_u32 << 31)
             };
             let speeds: Vec<f64> = (0..2 * joints).map(|_| 0.2 + 8.0 * unit()).collect();
@@ -162,21 +152,14 @@ pub fn tables(bad: bool) -> impl Strategy<Value = Table> {
                 let t = k as f64 / rate;
                 let stamp = start + t + jitter * (unit() - 0.5) / rate;
                 let mut row = vec![(stamp * 1e7).round() / 1e7];
-                row.extend(
-                    speeds
-                        .iter()
-                        .map(|speed| (1e6 * (speed * t).sin()).round() / 1e6 + 1e-4 * unit()),
-                );
+                row.extend(speeds.iter().map(|speed| (1e6 * (speed * t).sin()).round() / 1e6 + 1e-4 * unit()));
                 rows.push(row);
             }
             for accident in &accidents {
                 happen(&mut rows, accident);
             }
             Table {
-                joints: ["base", "arm", "hand", "tip"][..joints]
-                    .iter()
-                    .map(|name| (*name).to_owned())
-                    .collect(),
+                joints: ["base", "arm", "hand", "tip"][..joints].iter().map(|name| (*name).to_owned()).collect(),
                 order: (0..=2 * joints).collect(),
                 rows,
             }

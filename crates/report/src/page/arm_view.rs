@@ -49,10 +49,7 @@ impl Camera {
     fn new(azimuth: f64) -> Self {
         let (sin, cos) = azimuth.sin_cos();
         let (lift, level) = ELEVATION.sin_cos();
-        Self {
-            right: Vector3::new(-sin, cos, 0.0),
-            up: Vector3::new(-cos * lift, -sin * lift, level),
-        }
+        Self { right: Vector3::new(-sin, cos, 0.0), up: Vector3::new(-cos * lift, -sin * lift, level) }
     }
 
     fn see(&self, point: &Vector3<f64>) -> [f64; 2] {
@@ -71,11 +68,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm, has_section: impl Fn(us
     let fit = fit_into_box(seen.iter().chain(&corners), arm.dof());
     let bottom = fit.bottom;
     let fit = |point: [f64; 2]| fit.place(point);
-    let mut svg = Svg::new(
-        WIDTH,
-        bottom + BELOW,
-        "the arm, its joints coloured by the nominal model's error",
-    );
+    let mut svg = Svg::new(WIDTH, bottom + BELOW, "the arm, its joints coloured by the nominal model's error");
     svg.area(&corners.map(&fit), "floor");
     for k in [-0.5, 0.0, 0.5] {
         let edge = |x: f64, y: f64| fit(camera.see(&Vector3::new(floor * x, floor * y, 0.0)));
@@ -106,12 +99,7 @@ pub fn draw(report: &Report, traces: &Traces, arm: &Arm, has_section: impl Fn(us
         let error = report.fit.get(name).map(nominal_error);
         let class = error.map_or("m-none".to_owned(), |error| format!("m{}", class_of(error)));
         svg.circle([*x, *y], RADIUS, &format!("joint {class}"));
-        svg.text(
-            [*x, y + 4.5],
-            &format!("number {class}-ink"),
-            "middle",
-            &(i + 1).to_string(),
-        );
+        svg.text([*x, y + 4.5], &format!("number {class}-ink"), "middle", &(i + 1).to_string());
     }
     svg.finish()
 }
@@ -222,11 +210,7 @@ fn spread_out(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
                 if distance >= nearest {
                     continue;
                 }
-                let [ux, uy] = if distance > 1e-6 {
-                    [dx / distance, dy / distance]
-                } else {
-                    [0.8, -0.6]
-                };
+                let [ux, uy] = if distance > 1e-6 { [dx / distance, dy / distance] } else { [0.8, -0.6] };
                 let push = 0.5 * (nearest - distance);
                 for (point, sign) in [(i, 1.0), (j, -1.0)] {
                     points[point][0] += sign * push * ux;
@@ -254,10 +238,7 @@ fn labels(
 ) {
     let mut all: Vec<Label> = Vec::new();
     let effects = |joint: Option<&str>| {
-        let own = report
-            .findings
-            .iter()
-            .filter(|finding| finding.joint.as_deref() == joint);
+        let own = report.findings.iter().filter(|finding| finding.joint.as_deref() == joint);
         let names: Vec<String> = own.map(words::effect).collect();
         names.join(", ")
     };
@@ -265,50 +246,26 @@ fn labels(
         let error = report.fit.get(&joint.name).map(nominal_error);
         let mut below = effects(Some(&joint.name));
         if report.unexplained.iter().any(|open| open.joint == joint.name) {
-            below = if below.is_empty() {
-                "unexplained residual".into()
-            } else {
-                format!("{below}, unexplained residual")
-            };
+            below =
+                if below.is_empty() { "unexplained residual".into() } else { format!("{below}, unexplained residual") };
         }
         if not_diagnosed::has(report, &joint.name) {
             // A second encoder may show an effect where the torque shows none.
-            below = if below.is_empty() {
-                "not diagnosed".into()
-            } else {
-                format!("not diagnosed, {below}")
-            };
+            below = if below.is_empty() { "not diagnosed".into() } else { format!("not diagnosed, {below}") };
         }
         let name = match error {
-            Some(error) => format!(
-                "{} · {}",
-                clipped(&joint.name, LONGEST_LABEL - 7),
-                numbers::share(error)
-            ),
+            Some(error) => format!("{} · {}", clipped(&joint.name, LONGEST_LABEL - 7), numbers::share(error)),
             None => clipped(&joint.name, LONGEST_LABEL),
         };
-        all.push(Label {
-            at: joints[i],
-            name,
-            below,
-            link: has_section(i).then(|| format!("joint-{}", i + 1)),
-        });
+        all.push(Label { at: joints[i], name, below, link: has_section(i).then(|| format!("joint-{}", i + 1)) });
     }
     let whole = effects(None);
     if !whole.is_empty() {
-        all.push(Label {
-            at: tool,
-            name: "whole arm".into(),
-            below: whole,
-            link: Some("whole-arm".into()),
-        });
+        all.push(Label { at: tool, name: "whole arm".into(), below: whole, link: Some("whole-arm".into()) });
     }
     all.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
     let right = all.split_off(all.len() / 2);
-    for (mut side, x, anchor, sign) in [
-        (all, SIDES[0] - 30.0, "end", 1.0),
-        (right, SIDES[1] + 30.0, "start", -1.0),
-    ] {
+    for (mut side, x, anchor, sign) in [(all, SIDES[0] - 30.0, "end", 1.0), (right, SIDES[1] + 30.0, "start", -1.0)] {
         side.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
         let wanted: Vec<f64> = side.iter().map(|label| label.at[1]).collect();
         for (label, y) in side.iter().zip(stacked(&wanted, bottom)) {
@@ -325,18 +282,8 @@ fn labels(
             if let Some(link) = &label.link {
                 svg.raw(format_args!("<a href=\"#{link}\">"));
             }
-            svg.text(
-                [x, y],
-                if is_quiet { "label quiet" } else { "label" },
-                anchor,
-                &label.name,
-            );
-            svg.text(
-                [x, y + 16.0],
-                "label-below",
-                anchor,
-                &clipped(&label.below, LONGEST_LABEL + 6),
-            );
+            svg.text([x, y], if is_quiet { "label quiet" } else { "label" }, anchor, &label.name);
+            svg.text([x, y + 16.0], "label-below", anchor, &clipped(&label.below, LONGEST_LABEL + 6));
             if label.link.is_some() {
                 svg.raw(format_args!("</a>"));
             }

@@ -34,11 +34,7 @@ impl Figures<'_> {
             let around = 2.0 * (last[1] - first[0]).max(0.1);
             points.retain(|point| (first[0] - around..=last[1] + around).contains(&point[0]));
         }
-        let bins = if finding.as_effect.spec().is_periodic || against == Against::Time {
-            300.0
-        } else {
-            90.0
-        };
+        let bins = if finding.as_effect.spec().is_periodic || against == Against::Time { 300.0 } else { 90.0 };
         self.cloud(joint, against, &points, bins)
     }
 
@@ -100,21 +96,13 @@ impl Figures<'_> {
                 svg.line([place, top], [place, bottom], if tick == 0.0 { "zero" } else { "grid" });
                 svg.tick_below(place, bottom, tick, decimals);
             }
-            svg.text(
-                [0.5 * (LEFT + right), height - 6.0],
-                "axis",
-                "middle",
-                &format!("{title} ({})", x_unit.unit),
-            );
+            svg.text([0.5 * (LEFT + right), height - 6.0], "axis", "middle", &format!("{title} ({})", x_unit.unit));
             let inside = |point: &&Point| {
                 let [from, to] = x.range();
                 let [low, high] = y.range();
                 (from..=to).contains(&point[0]) && (low..=high).contains(&point[part])
             };
-            let dots = few
-                .iter()
-                .filter(inside)
-                .map(|point| [x.place(point[0]), y.place(point[part])]);
+            let dots = few.iter().filter(inside).map(|point| [x.place(point[0]), y.place(point[part])]);
             svg.dots(&dots.collect::<Vec<_>>(), &format!("dots {class}-dots"));
             if part == 1 {
                 draw_effect(&mut svg, &effect, &x, &y);
@@ -125,26 +113,15 @@ impl Figures<'_> {
         let largest = |[low, high]: [f64; 2]| high.abs().max(low.abs());
         let x_axis = Axis::new(format!("{title} ({})", x_unit.unit), largest(x.range()), x_unit.factor);
         let y_axis = Axis::new(label, largest(y.range()), unit.factor);
-        let data = data(
-            &few,
-            &effect,
-            [(x_axis, x_unit.factor), (y_axis, unit.factor)],
-            [x.range(), y.range()],
-        );
-        Some(Cloud {
-            before: panel(1, "before"),
-            after: panel(2, "after"),
-            data,
-        })
+        let data = data(&few, &effect, [(x_axis, x_unit.factor), (y_axis, unit.factor)], [x.range(), y.range()]);
+        Some(Cloud { before: panel(1, "before"), after: panel(2, "after"), data })
     }
 
     /// Whether other findings also act on the joint.
     pub fn shares_joint(&self, index: usize, joint: usize) -> bool {
         let acts = |trace: &Trace| {
             let effects = trace.effects.iter().enumerate().filter(|(other, _)| *other != index);
-            effects
-                .filter_map(|(_, joints)| joints.get(joint))
-                .any(|effect| !effect.is_empty())
+            effects.filter_map(|(_, joints)| joints.get(joint)).any(|effect| !effect.is_empty())
         };
         self.traces.recordings.iter().any(acts)
     }
@@ -189,11 +166,7 @@ fn data(
     let is_in = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);
     let place = |state: f64| (state / (x.step * x_unit)).round() as i64;
     let value = |torque: f64| {
-        if is_in(torque, y_ends) {
-            Cell::of(torque, y.step * y_unit)
-        } else {
-            Cell::MISSING
-        }
+        if is_in(torque, y_ends) { Cell::of(torque, y.step * y_unit) } else { Cell::MISSING }
     };
     // Before, after, the effect's ends.
     let mut rows: Vec<(i64, [Cell; 4])> = points
@@ -227,14 +200,7 @@ fn data(
         series(2, "effect", "effect", 0),
         series(3, "effect", "effect", 0),
     ];
-    Data {
-        panels: Vec::new(),
-        shades: Vec::new(),
-        places: differences(&places),
-        series: all.into(),
-        x,
-        y,
-    }
+    Data { panels: Vec::new(), shades: Vec::new(), places: differences(&places), series: all.into(), x, y }
 }
 
 /// The effect's torque over a narrow range of state.
@@ -250,11 +216,8 @@ struct Bin {
 fn through(points: &[Point], [from, to]: [f64; 2], bins: f64) -> Vec<Bin> {
     // Zero is a border of bins, so that a jump there remains a jump.
     let width = ((to - from) / bins).max(f64::MIN_POSITIVE);
-    let mut sorted: Vec<[f64; 2]> = points
-        .iter()
-        .filter(|point| (from..=to).contains(&point[0]))
-        .map(|point| [point[0], point[3]])
-        .collect();
+    let mut sorted: Vec<[f64; 2]> =
+        points.iter().filter(|point| (from..=to).contains(&point[0])).map(|point| [point[0], point[3]]).collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let bin = |point: &[f64; 2]| (point[0] / width).floor() as i64;
     let mut bins: Vec<Bin> = Vec::new();
@@ -277,11 +240,7 @@ fn through(points: &[Point], [from, to]: [f64; 2], bins: f64) -> Vec<Bin> {
 
 /// A line where the effect is a function of the state, a band where it has many values.
 fn draw_effect(svg: &mut Svg, bins: &[Bin], x: &Scale, y: &Scale) {
-    let starts = bins
-        .iter()
-        .enumerate()
-        .filter(|(_, bin)| bin.is_start)
-        .map(|(index, _)| index);
+    let starts = bins.iter().enumerate().filter(|(_, bin)| bin.is_start).map(|(index, _)| index);
     let ends: Vec<usize> = starts.skip(1).chain([bins.len()]).collect();
     let mut first = 0;
     let mut lines = Vec::new();

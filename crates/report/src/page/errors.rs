@@ -19,9 +19,7 @@ impl Page<'_> {
     /// The joints with a fit, base to tip, with their numbers.
     fn fits(&self) -> Vec<(usize, &str, &JointFit)> {
         let joints = self.figures.arm.joints().iter().enumerate();
-        joints
-            .filter_map(|(i, joint)| Some((i, joint.name.as_str(), self.report.fit.get(&joint.name)?)))
-            .collect()
+        joints.filter_map(|(i, joint)| Some((i, joint.name.as_str(), self.report.fit.get(&joint.name)?))).collect()
     }
 
     /// Errors by joint.
@@ -95,12 +93,8 @@ impl Page<'_> {
                 html! { span class=[better(factor, 1.1)] { (numbers::fixed(factor, usize::from(factor < 10.0))) } },
             ])
         });
-        let columns = [
-            words("joint"),
-            number("nominal, RMS position error"),
-            number("with effects"),
-            number("reduction factor"),
-        ];
+        let columns =
+            [words("joint"), number("nominal, RMS position error"), number("with effects"), number("reduction factor")];
         let body = html! {
             p { "The simulated arm is driven by the recorded torques, first with the nominal model, then with the effects found." }
             (table(&columns, rows.collect()))
@@ -146,11 +140,7 @@ fn dumbbells(fits: &[(usize, &str, &JointFit)]) -> String {
     };
     let bottom = ROW * fits.len() as f64 + 6.0;
     let mut svg = Svg::stretched(bottom + 24.0, "torque error of every joint");
-    let digits = if ends[1] - ends[0] > 2.2 {
-        &[1.0][..]
-    } else {
-        &[1.0, 2.0, 5.0]
-    };
+    let digits = if ends[1] - ends[0] > 2.2 { &[1.0][..] } else { &[1.0, 2.0, 5.0] };
     for power in -4..=4 {
         for digit in digits {
             let value = digit * 10_f64.powi(power);

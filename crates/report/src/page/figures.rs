@@ -58,11 +58,7 @@ impl Figures<'_> {
             let ends = [trace.time[0], trace.time[trace.time.len() - 1]];
             let scale = Scale::new(ends, [x, x + panel]);
             for [from, to] in rests(trace, joint) {
-                svg.rect(
-                    [scale.place(from), top],
-                    [scale.place(to) - scale.place(from), bottom - top],
-                    "rest",
-                );
+                svg.rect([scale.place(from), top], [scale.place(to) - scale.place(from), bottom - top], "rest");
             }
             for window in windows.iter().filter(|window| window.recording == trace.name) {
                 let [from, to] = [window.start.max(ends[0]), window.end.min(ends[1])].map(|t| scale.place(t));
@@ -90,12 +86,7 @@ impl Figures<'_> {
                     }
                 }
             }
-            svg.text(
-                [x + 2.0, top - 8.0],
-                "panel",
-                "start",
-                &heading(trace, number + 1, panel),
-            );
+            svg.text([x + 2.0, top - 8.0], "panel", "start", &heading(trace, number + 1, panel));
             x += panel + gap;
         }
         svg.text([0.5 * (LEFT + right), height - 5.0], "axis", "middle", "time (s)");
@@ -114,21 +105,12 @@ impl Figures<'_> {
         let title = format!("residual ({})", unit.unit);
         let y = Axis::new(title, high.max(-low), unit.factor);
         let mut data = Data {
-            x: Axis {
-                title: "time (s)".into(),
-                step: TIME_STEP,
-            },
+            x: Axis { title: "time (s)".into(), step: TIME_STEP },
             panels: Vec::new(),
             shades: Vec::new(),
             places: Vec::new(),
             series: [("before", "before"), ("after", "after")]
-                .map(|(name, colour)| Series {
-                    name,
-                    colour,
-                    dots: false,
-                    on: vec![0],
-                    values: Vec::new(),
-                })
+                .map(|(name, colour)| Series { name, colour, dots: false, on: vec![0], values: Vec::new() })
                 .into(),
             y,
         };
@@ -140,9 +122,7 @@ impl Figures<'_> {
             let own = windows.iter().filter(|window| window.recording == trace.name);
             let worst = own.map(|window| ([window.start, window.end], "window"));
             data.shades.extend(
-                rests
-                    .chain(worst)
-                    .map(|([from, to], class)| (rounded(place(from)), rounded(place(to)), class)),
+                rests.chain(worst).map(|([from, to], class)| (rounded(place(from)), rounded(place(to)), class)),
             );
             let most = (self.rows as f64 * span(trace) / total) as usize;
             let mut steps: Vec<f64> = trace.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -159,9 +139,7 @@ impl Figures<'_> {
                 let step = data.y.step * unit.factor;
                 for (of, values) in series.iter().zip(&mut data.series) {
                     let value = of.and_then(|of| of.get(row));
-                    values
-                        .values
-                        .push(value.map_or(Cell::GAP, |value| Cell::of(*value, step)));
+                    values.values.push(value.map_or(Cell::GAP, |value| Cell::of(*value, step)));
                 }
             }
             data.panels.push(Panel {
@@ -211,14 +189,10 @@ fn rounded(time: f64) -> f64 {
 
 /// The smallest and the largest residual of a joint, before and after.
 fn reached(shown: &[&Trace], joint: usize) -> [f64; 2] {
-    let all = shown
-        .iter()
-        .flat_map(|trace| [&trace.residual, &trace.residual_augmented]);
+    let all = shown.iter().flat_map(|trace| [&trace.residual, &trace.residual_augmented]);
     let values = all.filter_map(|series| series.get(joint)).flatten();
     let finite = values.filter(|value| value.is_finite());
-    finite.fold([0.0, 0.0], |[low, high]: [f64; 2], value| {
-        [low.min(*value), high.max(*value)]
-    })
+    finite.fold([0.0, 0.0], |[low, high]: [f64; 2], value| [low.min(*value), high.max(*value)])
 }
 
 /// About `most` of `count` rows in order: in each bin, those where a series is smallest or largest.
@@ -249,14 +223,10 @@ fn heading(trace: &Trace, number: usize, room: f64) -> String {
     let name = trace.name.rsplit(['/', '\\']).next().unwrap_or_default();
     let held_out = if trace.held_out { " · held out" } else { "" };
     let fits = |text: &str| text.chars().count() as f64 * 6.8 < room;
-    [
-        format!("{number} · {name}{held_out}"),
-        format!("{number}{held_out}"),
-        number.to_string(),
-    ]
-    .into_iter()
-    .find(|text| fits(text))
-    .unwrap_or_default()
+    [format!("{number} · {name}{held_out}"), format!("{number}{held_out}"), number.to_string()]
+        .into_iter()
+        .find(|text| fits(text))
+        .unwrap_or_default()
 }
 
 /// Intervals of time in which the joint is at rest.

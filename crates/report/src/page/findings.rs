@@ -29,10 +29,7 @@ impl Page<'_> {
         let name = self.figures.arm.joints()[joint].name.as_str();
         let touches = |finding: &Finding| {
             finding.joint.as_deref() == Some(name)
-                || finding
-                    .share_by_joint
-                    .get(name)
-                    .is_some_and(|share| *share >= SHOWN_SHARE)
+                || finding.share_by_joint.get(name).is_some_and(|share| *share >= SHOWN_SHARE)
         };
         self.report.findings.iter().any(touches)
             || self.report.unexplained.iter().any(|open| open.joint == name)
@@ -96,10 +93,8 @@ impl Page<'_> {
     fn residuals_against(&self, joint: usize, open: &Unexplained) -> Markup {
         let arm = self.figures.arm;
         let states = open.depends_on.iter().filter_map(|on| Against::of_dependence(on, arm));
-        let clouds: Vec<Cloud> = states
-            .filter_map(|against| self.figures.unexplained(joint, against))
-            .take(2)
-            .collect();
+        let clouds: Vec<Cloud> =
+            states.filter_map(|against| self.figures.unexplained(joint, against)).take(2).collect();
         html! {
             @if !clouds.is_empty() {
                 div.pair {
@@ -138,10 +133,8 @@ impl Page<'_> {
             !self.has_section(*joint) && !not_diagnosed::has(self.report, name)
         };
         let quiet = (0..self.figures.arm.dof()).filter(is_quiet);
-        let strips: Vec<_> = quiet
-            .map(|joint| (joint, self.strip(joint, &[])))
-            .filter(|(_, strip)| !strip.0.is_empty())
-            .collect();
+        let strips: Vec<_> =
+            quiet.map(|joint| (joint, self.strip(joint, &[]))).filter(|(_, strip)| !strip.0.is_empty()).collect();
         let body = html! {
             details {
                 summary { "Their residuals over time (" (strips.len()) ")" }
@@ -159,10 +152,7 @@ impl Page<'_> {
         let all = self.report.findings.iter().enumerate();
         all.filter(|(_, finding)| {
             finding.joint.as_deref() != Some(name)
-                && finding
-                    .share_by_joint
-                    .get(name)
-                    .is_some_and(|share| *share >= SHOWN_SHARE)
+                && finding.share_by_joint.get(name).is_some_and(|share| *share >= SHOWN_SHARE)
         })
         .collect()
     }
@@ -270,18 +260,14 @@ impl Page<'_> {
 /// The facts beside the title of a finding: its probability, its share of the torque, and the reduction of the held-out
 /// error.
 fn odds(finding: &Finding) -> Vec<String> {
-    let probability = finding
-        .probability
-        .map(|_| format!("probability {}", numbers::probability(finding.probability)));
+    let probability = finding.probability.map(|_| format!("probability {}", numbers::probability(finding.probability)));
     let share = words::share(finding).map(|share| format!("{} of the torque", numbers::share(share)));
     let improved = if words::is_between_sensors(finding) {
         "held-out difference between the two sensors"
     } else {
         "held-out error"
     };
-    let gain = finding
-        .held_out_gain
-        .map(|gain| format!("reduces the {improved} by {}", reduction(gain)));
+    let gain = finding.held_out_gain.map(|gain| format!("reduces the {improved} by {}", reduction(gain)));
     [probability, share, gain].into_iter().flatten().collect()
 }
 

@@ -43,11 +43,7 @@ impl Page<'_> {
         if rows.is_empty() {
             return None;
         }
-        let columns = [
-            words_column("effect"),
-            words_column("reason"),
-            words_column("detectable size"),
-        ];
+        let columns = [words_column("effect"), words_column("reason"), words_column("detectable size")];
         let body = html! {
             p { "These effects may be present: the recordings only reveal them at the sizes given." }
             (table(&columns, rows))
@@ -132,11 +128,7 @@ impl Page<'_> {
     pub(super) fn provenance(&self) -> Section {
         let names = &self.report.recordings;
         let used = |name: &String| {
-            if names.before.contains(name) {
-                "training, before"
-            } else {
-                "training"
-            }
+            if names.before.contains(name) { "training, before" } else { "training" }
         };
         let all = names.train.iter().map(|name| (name, used(name)));
         let all = all.chain(names.held_out.iter().map(|name| (name, "held out")));
@@ -183,16 +175,8 @@ impl Page<'_> {
         let moving = trace.moving.iter().enumerate();
         let moving = moving.filter(|(_, rows)| rows.contains(&true));
         let moving: Vec<String> = moving.map(|(joint, _)| (joint + 1).to_string()).collect();
-        let rate = if step > 0.0 {
-            format!("{:.0} Hz", 1.0 / step)
-        } else {
-            "–".into()
-        };
-        let moving = if moving.is_empty() {
-            "none".into()
-        } else {
-            words::list(&moving)
-        };
+        let rate = if step > 0.0 { format!("{:.0} Hz", 1.0 / step) } else { "–".into() };
+        let moving = if moving.is_empty() { "none".into() } else { words::list(&moving) };
         (format!("{first:.1} to {last:.1} s"), rate, moving)
     }
 

@@ -16,10 +16,7 @@ impl Page<'_> {
             0 => "none held out".to_owned(),
             some => format!("{some} held out"),
         };
-        format!(
-            "{}, {held_out}",
-            words::count(names.train.len() + names.held_out.len(), "recording")
-        )
+        format!("{}, {held_out}", words::count(names.train.len() + names.held_out.len(), "recording"))
     }
 
     /// The held-out error in a sentence.
@@ -44,17 +41,11 @@ impl Page<'_> {
         let [before, after] = [0, 1].map(|which: usize| median(errors.iter().map(|(_, errors)| errors[which])));
         let is_found = !self.report.findings.is_empty();
         let is_same = |[before, after]: [f64; 2]| numbers::nrmse(before) == numbers::nrmse(after);
-        let fallen = errors
-            .iter()
-            .filter(|(_, errors)| errors[1] < errors[0] && !is_same(*errors));
+        let fallen = errors.iter().filter(|(_, errors)| errors[1] < errors[0] && !is_same(*errors));
         let most = fallen.max_by(|(_, a), (_, b)| (a[0] - a[1]).total_cmp(&(b[0] - b[1])));
         let middle = numbers::nrmse(after);
         let several = errors.len() > 1;
-        let over = if several {
-            " (median over the joints with a model error)"
-        } else {
-            ""
-        };
+        let over = if several { " (median over the joints with a model error)" } else { "" };
         let torque = " times the torque's standard deviation";
         html! {
             p.lead {

@@ -11,10 +11,7 @@ pub struct Column<'a> {
 
 /// A column of words.
 pub const fn words(title: &str) -> Column<'_> {
-    Column {
-        title,
-        is_number: false,
-    }
+    Column { title, is_number: false }
 }
 
 /// A column of numbers.

@@ -68,22 +68,14 @@ impl Cell {
     /// `value` in steps; a gap where it is not finite.
     pub fn of(value: f64, step: f64) -> Self {
         let steps = (value / step).round();
-        if steps.is_finite() {
-            Self::At(steps as i64)
-        } else {
-            Self::GAP
-        }
+        if steps.is_finite() { Self::At(steps as i64) } else { Self::GAP }
     }
 }
 
 impl Axis {
     /// An axis for values up to `largest` that are shown divided by `factor`: ten thousand steps, a tenth of a pixel each.
     pub fn new(title: String, largest: f64, factor: f64) -> Self {
-        let largest = if largest.is_finite() && largest > 0.0 {
-            largest
-        } else {
-            factor
-        };
+        let largest = if largest.is_finite() && largest > 0.0 { largest } else { factor };
         // A round step is a short number in the page.
         let exact = largest / factor / 1e4;
         let power = 10_f64.powf(exact.log10().floor());
@@ -94,11 +86,7 @@ impl Axis {
 /// Positions as differences from the one before.
 pub fn differences(places: &[i64]) -> Vec<i64> {
     let before = std::iter::once(0).chain(places.iter().copied());
-    places
-        .iter()
-        .zip(before)
-        .map(|(place, before)| place - before)
-        .collect()
+    places.iter().zip(before).map(|(place, before)| place - before).collect()
 }
 
 /// The drawings of `data`, with the data for the viewer; without scripts, the drawings are shown.

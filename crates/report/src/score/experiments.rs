@@ -125,21 +125,14 @@ fn unresolved(confusion: &Confusion) -> Option<Vec<String>> {
         After::NeitherNamed => "neither is named",
         After::NoAnswer => "the motion could not be recorded or diagnosed",
     };
-    confusion.proposed.then(|| {
-        vec![
-            confusion.case.clone(),
-            name(&confusion.finding),
-            name(&confusion.rival),
-            after.to_owned(),
-        ]
-    })
+    confusion
+        .proposed
+        .then(|| vec![confusion.case.clone(), name(&confusion.finding), name(&confusion.rival), after.to_owned()])
 }
 
 /// Why the target for resolved confusions is not reached.
 pub fn reason(experiments: &Experiments) -> String {
     let failed = experiments.confusions.iter().filter_map(unresolved);
-    let words: Vec<String> = failed
-        .map(|row| format!("{} ({} or {}: {})", row[0], row[1], row[2], row[3]))
-        .collect();
+    let words: Vec<String> = failed.map(|row| format!("{} ({} or {}: {})", row[0], row[1], row[2], row[3])).collect();
     format!("not resolved: {}.", words.join(", "))
 }

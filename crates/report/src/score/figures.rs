@@ -63,12 +63,7 @@ pub fn calibration(calibration: &Calibration) -> String {
     for share in [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0] {
         svg.text([x.place(share), BOTTOM + 18.0], "tick", "middle", &percent(share));
     }
-    svg.text(
-        [0.5 * (LEFT + RIGHT), BOTTOM + 38.0],
-        "axis",
-        "middle",
-        "stated probability",
-    );
+    svg.text([0.5 * (LEFT + RIGHT), BOTTOM + 38.0], "axis", "middle", "stated probability");
     for bin in &calibration.bins {
         point(&mut svg, &y, x.place(bin.said.max(0.4)), &bin.right);
     }

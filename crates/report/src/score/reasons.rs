@@ -17,15 +17,10 @@ pub fn reason(target: &Target, score: &Score) -> String {
             let has_any = |case: &String| {
                 let outside = score.outside.iter().filter(|outcome| !outcome.injected.is_empty());
                 let inside = score.injected.iter().map(|outcome| &outcome.case);
-                inside
-                    .chain(outside.map(|outcome| &outcome.case))
-                    .any(|other| other == case)
+                inside.chain(outside.map(|outcome| &outcome.case)).any(|other| other == case)
             };
             let empty = score.false_names.iter().filter(|name| !has_any(&name.case));
-            format!(
-                "named in cases without an injected fault: {}.",
-                tally(empty.map(|name| name.effect.as_str()))
-            )
+            format!("named in cases without an injected fault: {}.", tally(empty.map(|name| name.effect.as_str())))
         }
         Figure::OutsideRefused => {
             let missed = score.outside.iter().filter(|case| !case.refused);
@@ -43,10 +38,7 @@ pub fn reason(target: &Target, score: &Score) -> String {
         Figure::Covered => {
             let missed = score.injected.iter().filter(|o| o.is_asked());
             let missed = missed.filter(|o| !o.fate.is_covered());
-            format!(
-                "neither a finding nor an alternative: {}.",
-                tally(missed.map(|o| o.effect.as_str()))
-            )
+            format!("neither a finding nor an alternative: {}.", tally(missed.map(|o| o.effect.as_str())))
         }
         Figure::HeldOut => held_out(score),
         Figure::Tracking => "see the section on the closed loop for each case.".to_owned(),
@@ -63,34 +55,17 @@ fn tally<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let mut list: Vec<(&str, usize)> = counts.into_iter().collect();
     list.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));
     let words: Vec<String> = list.iter().map(|(name, count)| format!("`{name}` ({count})")).collect();
-    if words.is_empty() {
-        "none".to_owned()
-    } else {
-        words.join(", ")
-    }
+    if words.is_empty() { "none".to_owned() } else { words.join(", ") }
 }
 
 /// Effects that were not found with their size, and false names, in the group of cases of the figure.
 fn strict(target: &Target, score: &Score) -> String {
     let is_meant = |group: &&UrdfGroup| target.group == Some(group.urdf);
-    let strict = score
-        .by_urdf
-        .iter()
-        .find(is_meant)
-        .map_or(&score.strict, |group| &group.strict);
-    let worst = strict
-        .families
-        .iter()
-        .filter(|(_, family)| family.f1.is_none_or(|f1| f1 < 0.95));
+    let strict = score.by_urdf.iter().find(is_meant).map_or(&score.strict, |group| &group.strict);
+    let worst = strict.families.iter().filter(|(_, family)| family.f1.is_none_or(|f1| f1 < 0.95));
     let words: Vec<String> = worst
         .map(|(name, family)| {
-            let StrictFamily {
-                asked,
-                right,
-                wrong_size,
-                false_names,
-                ..
-            } = family;
+            let StrictFamily { asked, right, wrong_size, false_names, .. } = family;
             format!("`{name}` ({right} of {asked} right, {wrong_size} of another size, {false_names} false)")
         })
         .collect();
@@ -112,19 +87,11 @@ fn families(score: &Score) -> String {
             format!("`{name}` {f1:.2} ({found} of {asked} found, {wrong} false)")
         })
         .collect();
-    let large = score
-        .injected
-        .iter()
-        .filter(|o| o.is_asked() && o.share.is_some_and(|share| share >= 0.06));
-    let (found, all) = large.fold((0, 0), |(found, all), o| {
-        (found + usize::from(o.fate.is_found()), all + 1)
-    });
+    let large = score.injected.iter().filter(|o| o.is_asked() && o.share.is_some_and(|share| share >= 0.06));
+    let (found, all) = large.fold((0, 0), |(found, all), o| (found + usize::from(o.fate.is_found()), all + 1));
     let small = score.injected.iter().filter(|o| o.is_asked() && !o.fate.is_found());
     let small: Vec<_> = small.collect();
-    let below = small
-        .iter()
-        .filter(|o| o.share.is_some_and(|share| share < 0.06))
-        .count();
+    let below = small.iter().filter(|o| o.share.is_some_and(|share| share < 0.06)).count();
     format!(
         "the lowest are {}. Of the {} effects that are not found, {below} have an expressed share below 6 %; of all effects above 6 %, {found} of {all} are found.",
         words.join(", "),
@@ -151,11 +118,7 @@ fn parameters(score: &Score, intervals: bool) -> String {
         .collect();
     worst.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let words: Vec<String> = worst.into_iter().take(6).map(|(_, text)| text).collect();
-    let what = if intervals {
-        "intervals that miss the ground truth most often"
-    } else {
-        "largest median errors"
-    };
+    let what = if intervals { "intervals that miss the ground truth most often" } else { "largest median errors" };
     if words.is_empty() {
         return "no parameter stands out.".to_owned();
     }
@@ -171,14 +134,6 @@ fn held_out(score: &Score) -> String {
         .filter(|(ratio, _)| *ratio > 1.1)
         .collect();
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let words: Vec<String> = worst
-        .iter()
-        .take(8)
-        .map(|(ratio, case)| format!("{case} ({ratio:.2})"))
-        .collect();
-    format!(
-        "{} cases have a ratio above 1.1; the largest are {}.",
-        worst.len(),
-        words.join(", ")
-    )
+    let words: Vec<String> = worst.iter().take(8).map(|(ratio, case)| format!("{case} ({ratio:.2})")).collect();
+    format!("{} cases have a ratio above 1.1; the largest are {}.", worst.len(), words.join(", "))
 }

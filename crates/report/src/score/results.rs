@@ -61,26 +61,14 @@ pub fn found(score: &Score) -> Vec<Block> {
         } else {
             "Detection rate against the effect's signal-to-noise ratio: the standard deviation of its torque over that of the noise on one sample of its joint's torque."
         };
-        list.push(Block::Figure {
-            svg: figures::detection(curve),
-            caption: caption.into(),
-        });
+        list.push(Block::Figure { svg: figures::detection(curve), caption: caption.into() });
         let rows = curve.bins.iter().map(|bin| {
             let show = |value: f64| if is_share { percent(value) } else { format!("{value}") };
             let to = bin.to.map_or_else(|| "more".to_owned(), show);
             let covered = format!("{} of {}", bin.covered.hits, bin.covered.of);
-            vec![
-                format!("{} to {to}", show(bin.from)),
-                counted(&bin.found),
-                covered,
-                bin.not_observable.to_string(),
-            ]
+            vec![format!("{} to {to}", show(bin.from)), counted(&bin.found), covered, bin.not_observable.to_string()]
         });
-        let size = if is_share {
-            "expressed share"
-        } else {
-            "signal-to-noise ratio"
-        };
+        let size = if is_share { "expressed share" } else { "signal-to-noise ratio" };
         let head = [size, "found", "found or alternative", "declared not testable"];
         list.push(table(&head, 1, rows.collect()));
     }
@@ -99,23 +87,13 @@ pub fn found(score: &Score) -> Vec<Block> {
 
 /// The matrix; columns have numbers, which the rows' names explain, so that it stays narrow.
 fn confusion(matrix: &BTreeMap<String, BTreeMap<String, usize>>) -> Vec<Block> {
-    const IN_WORDS: [&str; 5] = [
-        "outside the catalogue",
-        "nothing there",
-        "refused",
-        "not observable",
-        "not named",
-    ];
+    const IN_WORDS: [&str; 5] = ["outside the catalogue", "nothing there", "refused", "not observable", "not named"];
     let label = |name: &str| name.replace('_', " ");
     let is_effect = |name: &&String| !IN_WORDS.contains(&name.as_str());
     let all = matrix.keys().chain(matrix.values().flat_map(BTreeMap::keys));
     let effects: BTreeSet<&String> = all.filter(is_effect).collect();
     let words = IN_WORDS.iter().map(|&word| word.to_owned());
-    let rows: Vec<String> = effects
-        .iter()
-        .map(|&name| name.clone())
-        .chain(words.clone().take(2))
-        .collect();
+    let rows: Vec<String> = effects.iter().map(|&name| name.clone()).chain(words.clone().take(2)).collect();
     let columns: Vec<String> = effects.iter().map(|&name| name.clone()).chain(words.skip(2)).collect();
     let mut head = vec!["injected ↓, named →".to_owned()];
     head.extend(columns.iter().enumerate().map(|(k, name)| match k < effects.len() {
@@ -129,11 +107,7 @@ fn confusion(matrix: &BTreeMap<String, BTreeMap<String, usize>>) -> Vec<Block> {
             Some(count) => count.to_string(),
             None => String::new(),
         };
-        let number = if k < effects.len() {
-            format!("{} ", k + 1)
-        } else {
-            String::new()
-        };
+        let number = if k < effects.len() { format!("{} ", k + 1) } else { String::new() };
         let mut row = vec![format!("{number}{}", label(name))];
         row.extend(columns.iter().map(cell));
         row
@@ -143,11 +117,7 @@ fn confusion(matrix: &BTreeMap<String, BTreeMap<String, usize>>) -> Vec<Block> {
             "An injected effect that is not found is counted under the largest false name on its joint, or under the answer given instead. A false name that replaces \
              no injected effect is in the row \"nothing there\".",
         ),
-        Block::Table {
-            rows: rows.iter().enumerate().map(row).collect(),
-            head,
-            words: 1,
-        },
+        Block::Table { rows: rows.iter().enumerate().map(row).collect(), head, words: 1 },
     ]
 }
 
@@ -159,19 +129,8 @@ fn two(errors: &Errors) -> [String; 2] {
 pub fn numbers(score: &Score) -> Vec<Block> {
     let rows = score.parameters.iter().map(|p| {
         let [median, ninetieth] = two(&p.errors);
-        let parameter = if p.main {
-            format!("**{}**", p.parameter)
-        } else {
-            p.parameter.clone()
-        };
-        vec![
-            format!("`{}`", p.effect),
-            parameter,
-            p.errors.count.to_string(),
-            median,
-            ninetieth,
-            counted(&p.covered),
-        ]
+        let parameter = if p.main { format!("**{}**", p.parameter) } else { p.parameter.clone() };
+        vec![format!("`{}`", p.effect), parameter, p.errors.count.to_string(), median, ninetieth, counted(&p.covered)]
     });
     let head = [
         "effect",
@@ -199,10 +158,8 @@ pub fn controls(score: &Score) -> Vec<Block> {
     let cases: Vec<&HeldOut> = score.held_out.iter().filter(|case| case.has_all_terms()).collect();
     let of = |label: &str, pick: &dyn Fn(&HeldOut) -> Option<f64>| {
         let errors: Vec<f64> = cases.iter().filter_map(|case| pick(case)).collect();
-        let ratios: Vec<f64> = cases
-            .iter()
-            .filter_map(|case| Some(pick(case)? / case.true_terms?.max(1e-12)))
-            .collect();
+        let ratios: Vec<f64> =
+            cases.iter().filter_map(|case| Some(pick(case)? / case.true_terms?.max(1e-12))).collect();
         let show = |values: &[f64], at: f64| quantile(values, at).map_or_else(|| "–".into(), |v| format!("{v:.3}"));
         vec![
             label.to_owned(),
@@ -213,14 +170,7 @@ pub fn controls(score: &Score) -> Vec<Block> {
             show(&ratios, 0.9),
         ]
     };
-    let head = [
-        "model",
-        "cases",
-        "median",
-        "90th percentile",
-        "over the true terms, median",
-        "90th percentile",
-    ];
+    let head = ["model", "cases", "median", "90th percentile", "over the true terms, median", "90th percentile"];
     let rows = vec![
         of("nominal model", &|case| case.nominal),
         of("a wrong term in place of a true one", &|case| case.wrong_term),
@@ -244,13 +194,10 @@ pub fn controls(score: &Score) -> Vec<Block> {
 
 /// Probabilities.
 pub fn calibration(score: &Score) -> Vec<Block> {
-    let rows = score.calibration.bins.iter().map(|bin| {
-        vec![
-            format!("{:.2} to {:.2}", bin.from, bin.to),
-            format!("{:.3}", bin.said),
-            counted(&bin.right),
-        ]
-    });
+    let rows =
+        score.calibration.bins.iter().map(|bin| {
+            vec![format!("{:.2} to {:.2}", bin.from, bin.to), format!("{:.3}", bin.said), counted(&bin.right)]
+        });
     vec![
         Block::Heading("Calibration of the probabilities"),
         text(format!(
@@ -264,10 +211,6 @@ pub fn calibration(score: &Score) -> Vec<Block> {
             svg: figures::calibration(&score.calibration),
             caption: "Share of correct findings against the stated probability; on the line, both are equal.".into(),
         },
-        table(
-            &["probability", "mean stated probability", "correct"],
-            1,
-            rows.collect(),
-        ),
+        table(&["probability", "mean stated probability", "correct"], 1, rows.collect()),
     ]
 }

@@ -8,12 +8,7 @@ use crate::numbers::percent_to_a_tenth as percent;
 pub fn counted(counted: &Counted) -> String {
     let [low, high] = counted.wilson.map(|bound| 100.0 * bound);
     match counted.share() {
-        Some(share) => format!(
-            "{} of {} ({}; {low:.0} to {high:.0} %)",
-            counted.hits,
-            counted.of,
-            percent(share)
-        ),
+        Some(share) => format!("{} of {} ({}; {low:.0} to {high:.0} %)", counted.hits, counted.of, percent(share)),
         None => "none to count".to_owned(),
     }
 }

@@ -88,25 +88,14 @@ pub fn table(report: &Report) -> String {
         for (index, finding) in list.into_iter().enumerate() {
             let is_first = index == 0;
             table.add_row([
-                if is_first {
-                    words::joint(joint).to_owned()
-                } else {
-                    String::new()
-                },
+                if is_first { words::joint(joint).to_owned() } else { String::new() },
                 effect(finding),
                 sizes::cell(finding, "\n"),
                 words::share(finding).map_or_else(|| "–".into(), numbers::share),
-                if is_first || joint.is_none() {
-                    error(report, finding)
-                } else {
-                    String::new()
-                },
+                if is_first || joint.is_none() { error(report, finding) } else { String::new() },
             ]);
         }
-        let open = report
-            .unexplained
-            .iter()
-            .find(|open| Some(open.joint.as_str()) == joint);
+        let open = report.unexplained.iter().find(|open| Some(open.joint.as_str()) == joint);
         if let Some(open) = open {
             table.add_row(residual(open, [String::new(), String::new()]));
         }
@@ -117,12 +106,7 @@ pub fn table(report: &Report) -> String {
             table.add_row(residual(open, [open.joint.clone(), error_of(report, &open.joint)]));
         }
     }
-    table
-        .to_string()
-        .lines()
-        .map(str::trim_end)
-        .collect::<Vec<_>>()
-        .join("\n")
+    table.to_string().lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]
@@ -138,11 +122,7 @@ mod tests {
     fn a_size_that_may_be_zero_is_explained() {
         let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
         let mut finding = Finding::of(Effect::of(&CoulombFriction).on("a".to_owned()));
-        let level = |low: f64| Parameter {
-            value: 0.1,
-            ci95: [low, 0.4],
-            unit: "N m",
-        };
+        let level = |low: f64| Parameter { value: 0.1, ci95: [low, 0.4], unit: "N m" };
         finding.parameters.insert("level", level(0.05));
         report.findings = vec![finding.clone()];
         assert!(!columns(&report).contains("do not determine the size"));

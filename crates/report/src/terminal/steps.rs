@@ -7,11 +7,8 @@ use crate::{alternatives, next_words, words};
 
 /// The next steps, in sentences: missing data, unexplained residuals, the proposed motion, findings with alternatives.
 pub fn of(report: &Report) -> Vec<String> {
-    let mut steps: Vec<String> = report
-        .not_enough_data
-        .iter()
-        .map(|reason| format!("not enough data: {reason}"))
-        .collect();
+    let mut steps: Vec<String> =
+        report.not_enough_data.iter().map(|reason| format!("not enough data: {reason}")).collect();
     let is_searched = !matches!(report.verdict, Verdict::NotEnoughData | Verdict::UnitsFirst);
     if report.recordings.held_out.is_empty() && is_searched {
         steps.push("validate the fit with a recording of another motion (--held-out)".to_owned());
@@ -74,11 +71,7 @@ fn ambiguous(report: &Report) -> Vec<String> {
     let findings = report.findings.iter().filter(|finding| alternatives::has_any(finding));
     let said = findings.map(|finding| {
         let place = words::joint(finding.joint.as_deref());
-        format!(
-            "{place}, {}: {}",
-            words::effect(finding),
-            alternatives::with_experiment(finding)
-        )
+        format!("{place}, {}: {}", words::effect(finding), alternatives::with_experiment(finding))
     });
     said.collect()
 }

@@ -8,10 +8,7 @@ fn blocks() -> Vec<Block> {
         text("Held by `seal.json`, **not** by trust."),
         table(&["case", "share"], 1, vec![vec!["a|b".into(), "12 %".into()]]),
         table(&["case"], 1, Vec::new()),
-        Block::Figure {
-            svg: "<svg></svg>".into(),
-            caption: "What was found.".into(),
-        },
+        Block::Figure { svg: "<svg></svg>".into(), caption: "What was found.".into() },
     ]
 }
 

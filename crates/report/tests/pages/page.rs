@@ -41,10 +41,7 @@ fn a_lag_that_was_removed_is_stated() {
     let (mut report, traces, arm) = made_up::diagnosis(3, Plot::Rich);
     for (lag, said) in [(0.0185, "18.5 ms later than"), (-0.004, "4.0 ms earlier than")] {
         report.torque_lag = Some(lag);
-        for text in [
-            report::page(&report, &traces, &arm),
-            report::diagnosis_markdown(&report, &arm),
-        ] {
+        for text in [report::page(&report, &traces, &arm), report::diagnosis_markdown(&report, &arm)] {
             assert!(text.contains(said), "{said}");
         }
     }
@@ -60,21 +57,13 @@ fn the_first_sentence_agrees_with_its_numbers() {
             (fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) = (Some(*before), Some(*after));
         }
         let text = report::page(&report, &traces, &arm);
-        let lead = text
-            .split("<p class=\"lead\">")
-            .nth(1)
-            .and_then(|rest| rest.split("</p>").next());
-        lead.expect("it has a first sentence")
-            .replace("<b>", "")
-            .replace("</b>", "")
+        let lead = text.split("<p class=\"lead\">").nth(1).and_then(|rest| rest.split("</p>").next());
+        lead.expect("it has a first sentence").replace("<b>", "").replace("</b>", "")
     };
     let torque = "times the torque's standard deviation";
     let median = "(median over the joints with a model error).";
     let text = lead(&[[0.8, 0.1], [0.2, 0.1], [0.6, 0.3], [0.4, 0.05]]);
-    assert!(
-        text.ends_with(&format!("falls from 0.50 to 0.10 {torque} {median}")),
-        "{text}"
-    );
+    assert!(text.ends_with(&format!("falls from 0.50 to 0.10 {torque} {median}")), "{text}");
     // Most joints are unchanged, and one is better.
     let text = lead(&[[0.25, 0.25], [0.25, 0.25], [0.9, 0.26]]);
     let one =
@@ -82,10 +71,7 @@ fn the_first_sentence_agrees_with_its_numbers() {
     assert!(text.contains(&one) && !text.contains("0.25 to 0.25"), "{text}");
     assert!(text.ends_with("with a model error remains 0.25."), "{text}");
     let text = lead(&[[0.25, 0.2501], [0.25, 0.2499]]);
-    assert!(
-        text.ends_with(&format!("the RMS torque error remains 0.25 {torque} {median}")),
-        "{text}"
-    );
+    assert!(text.ends_with(&format!("the RMS torque error remains 0.25 {torque} {median}")), "{text}");
     let text = lead(&[[0.25, 0.25]]);
     assert!(text.ends_with(&format!("remains 0.25 {torque}.")), "{text}");
 }
@@ -112,23 +98,13 @@ fn what_changed_comes_first() {
 fn the_contents_lead_to_every_section() {
     let text = page(7, Plot::Rich);
     let (contents, rest) = text.split_once("</nav>").expect("the page has contents");
-    let links: Vec<&str> = contents
-        .split("<li><a href=\"#")
-        .skip(1)
-        .filter_map(|link| link.split('"').next())
-        .collect();
-    let headings: Vec<&str> = rest
-        .split("<h2 id=\"")
-        .skip(1)
-        .filter_map(|heading| heading.split('"').next())
-        .collect();
+    let links: Vec<&str> =
+        contents.split("<li><a href=\"#").skip(1).filter_map(|link| link.split('"').next()).collect();
+    let headings: Vec<&str> = rest.split("<h2 id=\"").skip(1).filter_map(|heading| heading.split('"').next()).collect();
     assert!(links.len() > 8, "{links:?}");
     assert_eq!(links, headings);
     let place = |id: &str| headings.iter().position(|heading| *heading == id);
-    assert!(
-        place("next") < place("joint-1"),
-        "what to do next comes before the details"
-    );
+    assert!(place("next") < place("joint-1"), "what to do next comes before the details");
 }
 
 /// Every zoomable drawing has its data: as many values as positions, and no figure is empty.
@@ -173,10 +149,7 @@ fn every_link_leads_somewhere() {
         let text = page(6, plot);
         let targets = |before: &str| -> Vec<String> {
             let parts = text.split(before).skip(1);
-            parts
-                .filter_map(|part| part.split('"').next())
-                .map(str::to_owned)
-                .collect()
+            parts.filter_map(|part| part.split('"').next()).map(str::to_owned).collect()
         };
         let ids = targets(" id=\"");
         let links = targets("href=\"#");

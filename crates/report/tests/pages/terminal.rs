@@ -34,19 +34,13 @@ fn the_short_text_is_one_screen_with_at_most_three_next_steps() {
     let short = terminal::diagnosis(&report);
     let steps = |text: &str| text.lines().filter(|line| line.starts_with("- ")).count();
     assert!((1..=4).contains(&steps(&short)), "{short}");
-    assert!(
-        short.contains("62.0 ± 3.1 N m/rad") && !short.contains("not testable"),
-        "{short}"
-    );
+    assert!(short.contains("62.0 ± 3.1 N m/rad") && !short.contains("not testable"), "{short}");
     assert!(short.lines().count() <= 40, "{short}");
     // Joints with the same next experiment are one step; what exceeds three steps is counted.
     let open = report.unexplained[0].clone();
     report.unexplained = (0..5).map(|_| open.clone()).collect();
     let together = terminal::diagnosis(&report);
-    assert!(
-        together.contains("unexplained residuals; next experiment"),
-        "{together}"
-    );
+    assert!(together.contains("unexplained residuals; next experiment"), "{together}");
     for (k, open) in report.unexplained.iter_mut().enumerate() {
         open.next = format!("record {k} more");
     }
@@ -69,10 +63,7 @@ fn alternatives_have_their_own_experiments() {
     };
     let brake = "read the torque with the brake closed and no current: a torque offset persists, friction does not";
     assert_eq!(experiments(&["friction_asymmetry"]), brake);
-    assert_eq!(
-        experiments(&["payload", "gravity_misalignment"]),
-        "static poses in several postures"
-    );
+    assert_eq!(experiments(&["payload", "gravity_misalignment"]), "static poses in several postures");
     let both = format!("{brake}; static poses in several postures");
     assert_eq!(experiments(&["friction_asymmetry", "payload"]), both);
     report.unexplained.clear();
@@ -95,10 +86,7 @@ fn words_in_the_table_are_not_broken() {
     for finding in &report.findings {
         let title = effects::spec(finding.effect).map_or(finding.effect, |spec| spec.title);
         for word in title.split(' ') {
-            assert!(
-                text.split_whitespace().any(|found| found == word),
-                "{word} is broken in\n{text}"
-            );
+            assert!(text.split_whitespace().any(|found| found == word), "{word} is broken in\n{text}");
         }
     }
 }
@@ -125,10 +113,7 @@ fn joints_that_are_not_diagnosed_come_first() {
     let joint = arm.joints()[2].name.clone();
     let strip = format!("Joint 3 · {joint}</h3>");
     let before = report::page(&report, &traces, &arm);
-    assert!(
-        before.contains(&strip),
-        "the residual of a joint without findings is drawn"
-    );
+    assert!(before.contains(&strip), "the residual of a joint without findings is drawn");
     report.fit.remove(&joint);
     report.not_diagnosed.push(NotDiagnosed {
         joints: vec![joint.clone()],
@@ -143,10 +128,7 @@ fn joints_that_are_not_diagnosed_come_first() {
     }
     let markdown = report::diagnosis_markdown(&report, &arm);
     let coded = reason.replacen(&joint, &format!("`{joint}`"), 1);
-    assert!(
-        markdown.contains(&format!("**{first}")) && markdown.contains(&coded),
-        "{markdown}"
-    );
+    assert!(markdown.contains(&format!("**{first}")) && markdown.contains(&coded), "{markdown}");
     let page = report::page(&report, &traces, &arm);
     assert!(page.contains(&format!("<h1>{first}")) && page.contains(&reason));
     assert!(!page.contains(&strip), "its residual is no error of the model");
@@ -210,10 +192,7 @@ fn a_residual_above_the_torques_standard_deviation_is_not_a_percentage() {
     let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
     report.unexplained[0].share = 3.21;
     let text = terminal::diagnosis(&report);
-    assert!(
-        text.contains("unexplained residual 3.2 times the torque's standard"),
-        "{text}"
-    );
+    assert!(text.contains("unexplained residual 3.2 times the torque's standard"), "{text}");
 }
 
 #[test]
@@ -228,10 +207,7 @@ fn the_first_sentence_states_little_explanation_and_missing_validation() {
     report.verdict = diagnosis::Verdict::Explained;
     let name = report.fit.keys().next().expect("a joint").clone();
     for (error, said) in [
-        (
-            0.45,
-            format!("explains the recordings to within 0.45 times the torque's standard deviation ({name})."),
-        ),
+        (0.45, format!("explains the recordings to within 0.45 times the torque's standard deviation ({name}).")),
         (
             0.95,
             format!("leaves a residual that looks like noise, of 0.95 times the torque's standard deviation ({name})."),
@@ -251,8 +227,5 @@ fn the_first_sentence_states_little_explanation_and_missing_validation() {
     assert!(text.contains("the model explains the recordings. "), "{text}");
     report.recordings.held_out.clear();
     let text = terminal::diagnosis(&report);
-    assert!(
-        !text.contains("held-out recording") && text.contains("not validated"),
-        "{text}"
-    );
+    assert!(!text.contains("held-out recording") && text.contains("not validated"), "{text}");
 }

@@ -43,12 +43,7 @@ pub fn readings(answer: &Answer) -> Vec<Reading> {
         .collect();
     for (k, finding) in findings() {
         let mut add = |effect: &str, joint: &Option<String>, parameters: BTreeMap<String, Number>, of: Vec<usize>| {
-            list.push(Reading {
-                name: (effect.to_owned(), joint.clone()),
-                parameters,
-                of,
-                rewritten: true,
-            });
+            list.push(Reading { name: (effect.to_owned(), joint.clone()), parameters, of, rewritten: true });
         };
         let joint = &finding.joint;
         let number = |key: &str| finding.parameters.get(key).copied();

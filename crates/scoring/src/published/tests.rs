@@ -5,17 +5,11 @@ use serde_json::json;
 use super::*;
 
 fn said(effects: &[&str], joint: Option<&str>, parameters: &[(&str, f64)]) -> PublishedEffect {
-    let number = |value: f64| PublishedNumber {
-        value,
-        unit: "N m".into(),
-    };
+    let number = |value: f64| PublishedNumber { value, unit: "N m".into() };
     PublishedEffect {
         effects: effects.iter().map(|&effect| effect.to_owned()).collect(),
         joint: joint.map(str::to_owned),
-        parameters: parameters
-            .iter()
-            .map(|&(key, value)| (key.to_owned(), number(value)))
-            .collect(),
+        parameters: parameters.iter().map(|&(key, value)| (key.to_owned(), number(value))).collect(),
         evidence: Evidence::Number,
         place: "a table".into(),
     }
@@ -58,22 +52,14 @@ fn answer() -> Answer {
 #[test]
 fn each_fate_is_distinguished_from_the_others() {
     let published = published(vec![
-        said(
-            &["friction_asymmetry"],
-            Some("a"),
-            &[("positive", 16.5), ("negative", 20.0)],
-        ),
+        said(&["friction_asymmetry"], Some("a"), &[("positive", 16.5), ("negative", 20.0)]),
         said(&["coulomb_friction"], Some("a"), &[("level", 20.4)]),
         said(&["torque_offset"], Some("a"), &[("offset", -3.2)]),
         said(&["gravity_misalignment"], None, &[]),
         said(&["viscous_friction"], Some("c"), &[("coefficient", 2.0)]),
         said(&["viscous_friction"], Some("c"), &[("coefficient", 4.0)]),
         said(&["viscous_friction", "coulomb_friction"], Some("c"), &[]),
-        said(
-            &["transmission_coupling"],
-            Some("a"),
-            &[("viscous", 0.8), ("coulomb", 1.0)],
-        ),
+        said(&["transmission_coupling"], Some("a"), &[("viscous", 0.8), ("coulomb", 1.0)]),
         said(&["rotor_inertia"], Some("b"), &[]),
         said(&["rotor_inertia"], Some("c"), &[]),
     ]);
@@ -114,16 +100,9 @@ fn each_fate_is_distinguished_from_the_others() {
 #[test]
 fn an_unpublished_finding_is_false_only_if_it_is_excluded() {
     let score = published(vec![said(&["coulomb_friction"], Some("a"), &[])]).score(Some(&answer()), None);
-    let besides: Vec<(&str, bool)> = score
-        .besides
-        .iter()
-        .map(|besides| (besides.name.0.as_str(), besides.contradicted_by.is_some()))
-        .collect();
-    let expected = [
-        ("transmission_coupling", false),
-        ("payload", true),
-        ("torque_ripple", false),
-    ];
+    let besides: Vec<(&str, bool)> =
+        score.besides.iter().map(|besides| (besides.name.0.as_str(), besides.contradicted_by.is_some())).collect();
+    let expected = [("transmission_coupling", false), ("payload", true), ("torque_ripple", false)];
     assert_eq!(besides, expected);
 }
 
@@ -134,11 +113,8 @@ fn an_offset_and_coulomb_friction_are_asymmetric_friction() {
         {"effect": "coulomb_friction", "joint": "a", "parameters": {"level": {"value": 20.0, "ci95": [20.0, 20.0]}}},
     ]});
     let answer: Answer = serde_json::from_value(value).expect("it is a diagnosis");
-    let published = published(vec![said(
-        &["friction_asymmetry"],
-        Some("a"),
-        &[("positive", 17.5), ("negative", 25.0)],
-    )]);
+    let published =
+        published(vec![said(&["friction_asymmetry"], Some("a"), &[("positive", 17.5), ("negative", 25.0)])]);
     let score = published.score(Some(&answer), None);
     assert_eq!(score.said[0].fate, PublishedFate::SameTorque);
     let found: Vec<Option<f64>> = score.said[0].numbers.iter().map(|number| number.found).collect();

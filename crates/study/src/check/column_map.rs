@@ -48,22 +48,12 @@ impl Change {
 
     /// `key = value` in the table of `joint`.
     pub fn new(joint: &str, key: &'static str, value: Value) -> Self {
-        Self {
-            joint: Some(joint.to_owned()),
-            key,
-            value,
-            remark: None,
-        }
+        Self { joint: Some(joint.to_owned()), key, value, remark: None }
     }
 
     /// The unit of the time stamps, with its size in seconds.
     pub fn time(unit: &'static str, seconds: f64) -> Self {
-        Self {
-            joint: None,
-            key: "unit",
-            value: Value::Unit(unit, seconds),
-            remark: None,
-        }
+        Self { joint: None, key: "unit", value: Value::Unit(unit, seconds), remark: None }
     }
 
     /// A factor of the torque, estimated from the model, with three digits.
@@ -74,10 +64,7 @@ impl Change {
 
     /// This change with a comment at the end of its line.
     pub fn with_remark(self, remark: &'static str) -> Self {
-        Self {
-            remark: Some(remark),
-            ..self
-        }
+        Self { remark: Some(remark), ..self }
     }
 }
 
@@ -109,11 +96,7 @@ impl Layout {
             Some(Value::Unit(unit, _)) => Some(*unit),
             _ => time_unit(origin.time_factor),
         };
-        let keys = [
-            ("unit", unit),
-            ("nanosec", origin.nanosec.as_deref()),
-            ("run", origin.run.as_deref()),
-        ];
+        let keys = [("unit", unit), ("nanosec", origin.nanosec.as_deref()), ("run", origin.run.as_deref())];
         for (key, value) in keys {
             if let Some(value) = value {
                 let _ = writeln!(text, "{key} = {}", quoted(value));
@@ -123,10 +106,7 @@ impl Layout {
             return Some(text + &one);
         }
         for (index, joint) in joints.iter().enumerate() {
-            let here: Vec<&Change> = changes
-                .iter()
-                .filter(|change| change.joint.as_ref() == Some(joint))
-                .collect();
+            let here: Vec<&Change> = changes.iter().filter(|change| change.joint.as_ref() == Some(joint)).collect();
             let _ = writeln!(text, "[joints.{}]", key_of(joint));
             text += &keys_of_joint(origin, joints, index, &here);
         }
@@ -138,10 +118,7 @@ impl Layout {
 fn for_all(names: &[String], origin: &Origin, changes: &[Change]) -> Option<String> {
     const JOINT: &str = "{joint}";
     let tables = names.iter().enumerate().map(|(index, joint)| {
-        let here: Vec<&Change> = changes
-            .iter()
-            .filter(|change| change.joint.as_ref() == Some(joint))
-            .collect();
+        let here: Vec<&Change> = changes.iter().filter(|change| change.joint.as_ref() == Some(joint)).collect();
         let is_named = |column: &OriginColumn| column.header.matches(joint.as_str()).count() == 1;
         let own = origin.columns.iter().filter(|column| column.joint == index);
         let is_alone = names.iter().filter(|other| other.contains(joint.as_str())).count() == 1;
@@ -152,9 +129,7 @@ fn for_all(names: &[String], origin: &Origin, changes: &[Change]) -> Option<Stri
         Some(keys_of_joint(origin, names, index, &here).replace(joint.as_str(), JOINT))
     });
     let tables: Vec<String> = tables.collect::<Option<_>>()?;
-    let first = tables
-        .first()
-        .filter(|first| tables.len() > 2 && tables.iter().all(|table| table == *first))?;
+    let first = tables.first().filter(|first| tables.len() > 2 && tables.iter().all(|table| table == *first))?;
     Some(format!("[joints.\"{JOINT}\"]\n{first}"))
 }
 
@@ -178,9 +153,7 @@ fn keys_of_joint(origin: &Origin, joints: &[String], joint: usize, changes: &[&C
     }
     // If the columns were read without factors, the changes are written as keys of their own. Otherwise a factor holds the
     // product of the change and the factor of the reading.
-    let is_plain = columns
-        .iter()
-        .all(|(_, column)| column.factor == 1.0 && column.offset == 0.0);
+    let is_plain = columns.iter().all(|(_, column)| column.factor == 1.0 && column.offset == 0.0);
     for (key, column) in &columns {
         // A factor does not reveal the unit of a current or a temperature.
         let is_written = matches!(column.quantity, Quantity::Current | Quantity::Temperature);
@@ -250,12 +223,7 @@ fn own_columns(recording: &Recording) -> Origin {
             offset: 0.0,
         })
     });
-    Origin {
-        time: "t".to_owned(),
-        time_factor: 1.0,
-        columns: columns.collect(),
-        ..Origin::default()
-    }
+    Origin { time: "t".to_owned(), time_factor: 1.0, columns: columns.collect(), ..Origin::default() }
 }
 
 /// The name of the unit of time that is `seconds` long; `None` for any other length.
@@ -272,11 +240,7 @@ fn quoted(text: &str) -> String {
 /// A key of TOML needs quotation marks if it has other characters than these.
 fn key_of(joint: &str) -> String {
     let is_bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
-    if !joint.is_empty() && joint.chars().all(is_bare) {
-        joint.to_owned()
-    } else {
-        quoted(joint)
-    }
+    if !joint.is_empty() && joint.chars().all(is_bare) { joint.to_owned() } else { quoted(joint) }
 }
 
 #[cfg(test)]
@@ -291,9 +255,7 @@ mod tests {
         } else {
             &["t", "q_a", "q_b/c", "tau_a", "tau_b/c"]
         };
-        let columns = names
-            .iter()
-            .map(|name| (name.to_string(), Column::Numbers(vec![0.0, 1.0])));
+        let columns = names.iter().map(|name| (name.to_string(), Column::Numbers(vec![0.0, 1.0])));
         Recording::of_columns("r", columns.collect(), None).expect("it is whole")
     }
 
@@ -311,9 +273,7 @@ mod tests {
                         [joints.\"b/c\"]\nq = \"q_b/c\"\nqd = \"qd_b/c\"\ntau = \"tau_b/c\"\nq_unit = \"deg\"\n\
                         qd_unit = \"deg/s\"\ntau_scale = 0.0123 # a guess\n";
         assert_eq!(whole, expected);
-        let without = Layout::of(&recording(false))
-            .map(&changes[1..3])
-            .expect("there are changes");
+        let without = Layout::of(&recording(false)).map(&changes[1..3]).expect("there are changes");
         assert!(without.contains("q_unit") && !without.contains("qd"), "{without}");
         assert_eq!(Layout::of(&recording(true)).map(&[]), None);
     }

@@ -47,11 +47,7 @@ impl Correction {
         let dof = arm.dof();
         let mut all = Vec::new();
         for joint in (0..dof).filter(|&joint| moves[joint]) {
-            all.extend([
-                Self::Flipped(joint),
-                Self::TorqueFlipped(joint),
-                Self::BothFlipped(joint),
-            ]);
+            all.extend([Self::Flipped(joint), Self::TorqueFlipped(joint), Self::BothFlipped(joint)]);
             if arm.joints()[joint].kind == JointKind::Revolute {
                 all.extend([FRAC_PI_2, -FRAC_PI_2, PI].map(|offset| Self::Zero(joint, offset)));
             }
@@ -94,13 +90,8 @@ impl Correction {
     /// From which columns the joints of `arm` are read.
     pub fn reading(self, arm: &Arm) -> Vec<JointReading> {
         let dof = arm.dof();
-        let as_it_is = |joint: usize| JointReading {
-            position: joint,
-            torque: joint,
-            scale: 1.0,
-            offset: 0.0,
-            torque_sign: 1.0,
-        };
+        let as_it_is =
+            |joint: usize| JointReading { position: joint, torque: joint, scale: 1.0, offset: 0.0, torque_sign: 1.0 };
         let mut list: Vec<JointReading> = (0..dof).map(as_it_is).collect();
         match self {
             Self::AsItIs | Self::Gravity(_) => {}
@@ -117,9 +108,7 @@ impl Correction {
             Self::UnitOf(joint, factor) => list[joint].scale = factor,
             Self::AllTorquesFlipped => list.iter_mut().for_each(|reading| reading.torque_sign = -1.0),
             Self::AllPositionsFlipped => list.iter_mut().for_each(|reading| reading.scale = -1.0),
-            Self::AllFlipped => list
-                .iter_mut()
-                .for_each(|reading| (reading.scale, reading.torque_sign) = (-1.0, -1.0)),
+            Self::AllFlipped => list.iter_mut().for_each(|reading| (reading.scale, reading.torque_sign) = (-1.0, -1.0)),
             Self::Reversed => (0..dof).for_each(|j| (list[j].position, list[j].torque) = (dof - 1 - j, dof - 1 - j)),
             Self::TorquesReversed => (0..dof).for_each(|j| list[j].torque = dof - 1 - j),
             Self::Swapped(a, b) => {
@@ -137,20 +126,14 @@ impl Correction {
         for (joint, reading) in self.reading(arm).into_iter().enumerate() {
             let motion = |value: &f64| reading.scale * value;
             let of = |signal: &recording::Signal| signal[reading.position].iter().map(motion).collect();
-            new.q[joint] = recording.q[reading.position]
-                .iter()
-                .map(|q| motion(q) + reading.offset)
-                .collect();
+            new.q[joint] = recording.q[reading.position].iter().map(|q| motion(q) + reading.offset).collect();
             if let (Some(new), Some(old)) = (&mut new.qd, &recording.qd) {
                 new[joint] = of(old);
             }
             if let (Some(new), Some(old)) = (&mut new.qdd, &recording.qdd) {
                 new[joint] = of(old);
             }
-            new.tau[joint] = recording.tau[reading.torque]
-                .iter()
-                .map(|tau| reading.torque_sign * tau)
-                .collect();
+            new.tau[joint] = recording.tau[reading.torque].iter().map(|tau| reading.torque_sign * tau).collect();
         }
         new
     }
@@ -173,10 +156,7 @@ impl Correction {
 
     /// Whether friction shows it, because its work has the other sign.
     pub fn is_of_a_sign_of_friction(self) -> bool {
-        matches!(
-            self,
-            Self::Flipped(_) | Self::TorqueFlipped(_) | Self::AllTorquesFlipped | Self::AllPositionsFlipped
-        )
+        matches!(self, Self::Flipped(_) | Self::TorqueFlipped(_) | Self::AllTorquesFlipped | Self::AllPositionsFlipped)
     }
 }
 

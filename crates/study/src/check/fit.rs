@@ -28,10 +28,7 @@ impl Fit {
 
     /// The sum of the logarithms of the joints' residuals.
     pub fn score(&self) -> f64 {
-        self.residual_share
-            .iter()
-            .map(|residual_share| residual_share.max(LEAST_RESIDUAL).ln())
-            .sum()
+        self.residual_share.iter().map(|residual_share| residual_share.max(LEAST_RESIDUAL).ln()).sum()
     }
 }
 
@@ -57,21 +54,13 @@ pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
     let (q, qd, qdd) = (read(&smooth.q, true), read(&smooth.qd, false), read(&smooth.qdd, false));
     let mut model = vec![0.0; q.len()];
     arm.inverse_dynamics_batch(&q, &qd, &qdd, &mut model);
-    let mut fit = Fit {
-        residual_share: Vec::new(),
-        factor: Vec::new(),
-        without: Vec::new(),
-        size: Vec::new(),
-    };
+    let mut fit = Fit { residual_share: Vec::new(), factor: Vec::new(), without: Vec::new(), size: Vec::new() };
     for (joint, read) in reading.iter().enumerate() {
         let own = joint * count..(joint + 1) * count;
         let (model, speed) = (&model[own.clone()], &qd[own]);
         let direction = read.scale.signum();
         let dry: Vec<f64> = smooth.dry[read.position].iter().map(|dry| direction * dry).collect();
-        let measured: Vec<f64> = smooth.tau[read.torque]
-            .iter()
-            .map(|tau| read.torque_sign * tau)
-            .collect();
+        let measured: Vec<f64> = smooth.tau[read.torque].iter().map(|tau| read.torque_sign * tau).collect();
         let products = Products::new([model, &dry, speed, &measured]);
         let (without, _) = products.fitted(&[]);
         let (residual_share, factor) = products.fitted(&[MODEL]);
@@ -89,12 +78,7 @@ pub fn fit(arm: &Arm, smooth: &Smooth, correction: Correction) -> Fit {
 /// The residual variance of a joint's torque over its variance if an inertia of its drive explains it, with friction and an offset, and
 /// not the model's torque.
 pub fn residual_share_of_drive(smooth: &Smooth, joint: usize) -> f64 {
-    let products = Products::new([
-        &smooth.qdd[joint],
-        &smooth.dry[joint],
-        &smooth.qd[joint],
-        &smooth.tau[joint],
-    ]);
+    let products = Products::new([&smooth.qdd[joint], &smooth.dry[joint], &smooth.qd[joint], &smooth.tau[joint]]);
     let (without, _) = products.fitted(&[]);
     let (residual_share, inertia) = products.fitted(&[MODEL]);
     if inertia > 0.0 { residual_share } else { without }
@@ -127,10 +111,7 @@ impl Products {
             }
         }
         let with_speed = |a: usize| centred[a][VISCOUS] + count as f64 * means[a] * means[VISCOUS];
-        Self {
-            centred,
-            with_speed: [DRY, VISCOUS].map(with_speed),
-        }
+        Self { centred, with_speed: [DRY, VISCOUS].map(with_speed) }
     }
 
     /// The residual share of the measured torque after a fit of friction and of the signals in `model`, and the factor of the first of

@@ -31,10 +31,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
     if period <= SLOWEST_PERIOD {
         return None;
     }
-    let finding = quality
-        .findings
-        .iter()
-        .find(|finding| finding.kind == FindingKind::TimeUnit);
+    let finding = quality.findings.iter().find(|finding| finding.kind == FindingKind::TimeUnit);
     // Recorded velocities determine the unit. Without them, it is the largest unit with which the rows are close enough.
     let units = [("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
     let by_velocity = finding.and_then(|finding| {
@@ -57,10 +54,7 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
             "its rows are {period:.3} s apart, too far for velocities and accelerations (and in no other unit of time the speeds \
              would be possible): record at 100 Hz or more"
         );
-        return Some(Misfit {
-            prevents_diagnosis: true,
-            ..Misfit::new(MisfitKind::Time, None, text, Vec::new())
-        });
+        return Some(Misfit { prevents_diagnosis: true, ..Misfit::new(MisfitKind::Time, None, text, Vec::new()) });
     };
     let text = format!(
         "its rows are {period:.3} s apart; are its stamps in {unit}{}? Give the unit in a column map (--map: unit = \"{unit}\" \
@@ -81,10 +75,8 @@ pub fn of_time(arm: &Arm, quality: &Quality) -> Option<Misfit> {
 /// The contradictions in the unit of the positions, judged by their ranges, by the ratio of their slopes to the recorded
 /// velocities, and by the torques.
 pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> Vec<Misfit> {
-    let moving: Vec<&Pair<'_>> = pairs
-        .iter()
-        .filter(|(joint, measured)| measured.moves && joint.kind == JointKind::Revolute)
-        .collect();
+    let moving: Vec<&Pair<'_>> =
+        pairs.iter().filter(|(joint, measured)| measured.moves && joint.kind == JointKind::Revolute).collect();
     let evident: Vec<&&Pair<'_>> = moving.iter().filter(|pair| is_beyond(pair)).collect();
     let slow = |factor: f64| {
         let ratio = |pair: &&Pair<'_>| pair.1.velocity_ratio;
@@ -97,12 +89,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     // Positions in turns are inside all limits. Their slopes, or the model's torques, show the unit.
     let in_turns = smooth.filter(|_| by_velocity.is_none() && evident.is_empty());
     if let Some(share) = in_turns.and_then(|smooth| explained_in_turns(arm, &moving, smooth)) {
-        return vec![of_unit(
-            pairs,
-            &moving,
-            TURN,
-            &format!("with this unit, the model and friction {share}"),
-        )];
+        return vec![of_unit(pairs, &moving, TURN, &format!("with this unit, the model and friction {share}"))];
     }
     if by_velocity.is_none() && 2 * evident.len() < moving.len().max(1) {
         return Vec::new();
@@ -139,20 +126,13 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     let Some((joint, measured)) = shown else {
         return Vec::new();
     };
-    let range = format!(
-        "{} spans {} … {}",
-        joint.name,
-        rounded(measured.q_range.0, 4),
-        rounded(measured.q_range.1, 4)
-    );
+    let range = format!("{} spans {} … {}", joint.name, rounded(measured.q_range.0, 4), rounded(measured.q_range.1, 4));
     // Positions of the motors with the torques of the joints, or of the motors: in degrees, the torques would be far too small.
     let is_geared = |unit: &(&str, &str, f64)| {
         let fitted = smooth.map(|smooth| fit(arm, smooth, Correction::Unit(unit.2)));
         by_velocity.is_none() && fitted.is_some_and(|fit| fit.size.iter().all(|size| *size < MOTOR_SIDE))
     };
-    let found = by_velocity
-        .or(possible.first().copied())
-        .filter(|unit| !is_geared(unit));
+    let found = by_velocity.or(possible.first().copied()).filter(|unit| !is_geared(unit));
     let Some((unit, of_velocity, factor)) = found else {
         let text = format!(
             "the positions are in no unit of angle that agrees with the torques: {range}, and the URDF's limits are {:.3} … {:.3} \
@@ -167,10 +147,7 @@ pub fn of_positions(arm: &Arm, pairs: &[Pair<'_>], smooth: Option<&Smooth>) -> V
     };
     let name = name_of(unit);
     let why = if by_velocity.is_some() {
-        format!(
-            "their slopes are {} times the recorded velocities",
-            rounded(1.0 / factor, 3)
-        )
+        format!("their slopes are {} times the recorded velocities", rounded(1.0 / factor, 3))
     } else if !fits(&(unit, of_velocity, factor)) {
         format!(
             "{range}, and the torques agree with the model far better in {name} than in any unit that the URDF's limits allow"
@@ -204,11 +181,9 @@ fn of_unit(
     let text = format!("the positions are in {name}: {why}; say so in a column map (--map): q_unit = \"{unit}\"");
     // A wrong unit of one position makes all torques of the model wrong, so that all joints are corrected together.
     let mut changes = Vec::new();
-    let slopes = moving.iter().filter(|(_, measured)| {
-        measured
-            .velocity_ratio
-            .is_some_and(|ratio| SAME_UNIT.contains(&ratio.abs()))
-    });
+    let slopes = moving
+        .iter()
+        .filter(|(_, measured)| measured.velocity_ratio.is_some_and(|ratio| SAME_UNIT.contains(&ratio.abs())));
     let velocities_too = 2 * slopes.count() >= moving.len();
     for (joint, _) in pairs.iter().filter(|(joint, _)| joint.kind == JointKind::Revolute) {
         changes.push(Change::new(&joint.name, "q_unit", Value::Unit(unit, factor)));
@@ -217,10 +192,7 @@ fn of_unit(
             changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
         }
     }
-    Misfit {
-        prevents_diagnosis: true,
-        ..Misfit::new(MisfitKind::PositionUnit, None, text, changes)
-    }
+    Misfit { prevents_diagnosis: true, ..Misfit::new(MisfitKind::PositionUnit, None, text, changes) }
 }
 
 /// What the model explains with positions in turns, if that is nearly all of most joints' torques and far more than as they are.
@@ -271,10 +243,7 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
     }
     let (unit, of_velocity, factor) = UNITS[0];
     let mut changes = vec![Change::new(&joint.name, "q_unit", Value::Unit(unit, factor))];
-    if measured
-        .velocity_ratio
-        .is_some_and(|ratio| SAME_UNIT.contains(&ratio.abs()))
-    {
+    if measured.velocity_ratio.is_some_and(|ratio| SAME_UNIT.contains(&ratio.abs())) {
         changes.push(Change::new(&joint.name, "qd_unit", Value::Unit(of_velocity, factor)));
     }
     let is_slope = |ratio: f64| (ratio.abs() * factor - 1.0).abs() < SAME_SLOPE;
@@ -302,20 +271,15 @@ pub fn of_one(arm: &Arm, (joint, measured): &Pair<'_>, smooth: Option<&Smooth>) 
 /// The contradiction if the speeds of all joints that move are far beyond their limits.
 pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
     let moving: Vec<&Pair<'_>> = pairs.iter().filter(|(_, measured)| measured.moves).collect();
-    let mut times: Vec<f64> = moving
-        .iter()
-        .map(|(joint, measured)| measured.speed_max / joint.limits.velocity)
-        .collect();
+    let mut times: Vec<f64> =
+        moving.iter().map(|(joint, measured)| measured.speed_max / joint.limits.velocity).collect();
     times.sort_by(f64::total_cmp);
     let (least, most) = (*times.first()?, *times.last()?);
     let has_limits = moving.iter().all(|(joint, _)| joint.limits.velocity > 0.0);
     if !has_limits || least <= MOST_SPEED || moving.len() < 2 {
         return None;
     }
-    let ratios: Vec<f64> = moving
-        .iter()
-        .filter_map(|(_, measured)| measured.velocity_ratio)
-        .collect();
+    let ratios: Vec<f64> = moving.iter().filter_map(|(_, measured)| measured.velocity_ratio).collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
     let same = ratios.len() == moving.len() && ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() < SAME_SLOPE);
     let hint = if same && !SAME_SPEED.contains(&mean) {
@@ -333,8 +297,5 @@ pub fn of_speeds(pairs: &[Pair<'_>]) -> Option<Misfit> {
         rounded(least, 2),
         rounded(most, 2)
     );
-    Some(Misfit {
-        prevents_diagnosis: true,
-        ..Misfit::new(MisfitKind::Speed, None, text, Vec::new())
-    })
+    Some(Misfit { prevents_diagnosis: true, ..Misfit::new(MisfitKind::Speed, None, text, Vec::new()) })
 }

@@ -105,12 +105,7 @@ pub fn proposal(arm: &Arm, known: &[Effect], recordings: &[&RegularRecording]) -
 
 /// Recordings to be fitted.
 fn inputs(recordings: &[RegularRecording]) -> Vec<Input<'_>> {
-    let input = |recording| Input {
-        name: "",
-        recording,
-        held_out: false,
-        before: false,
-    };
+    let input = |recording| Input { name: "", recording, held_out: false, before: false };
     recordings.iter().map(input).collect()
 }
 
@@ -160,9 +155,7 @@ impl Scanned {
     fn concerned(&self) -> Vec<usize> {
         let gains = || self.gains.iter();
         let is_contradicted = gains().any(|gain| *gain > CONTRADICTS) && gains().any(|gain| *gain < -CONTRADICTS);
-        (0..self.gains.len())
-            .filter(|&at| !is_contradicted || self.gains[at] > 0.0)
-            .collect()
+        (0..self.gains.len()).filter(|&at| !is_contradicted || self.gains[at] > 0.0).collect()
     }
 }
 
@@ -250,14 +243,7 @@ fn best_of<'a>(arm: &Arm, as_it_is: &Agreement, weighed: &'a [Weighed]) -> Optio
         let is_reduced = without > HARDLY_REDUCED * with;
         supporters > 1 && has_evidence && is_reduced && (is_overwhelming || !is_contradicted)
     };
-    Some(Best {
-        best,
-        rivals,
-        may_be_base,
-        shown_at,
-        supporters,
-        is_shown,
-    })
+    Some(Best { best, rivals, may_be_base, shown_at, supporters, is_shown })
 }
 
 impl Best<'_> {
@@ -270,10 +256,7 @@ impl Best<'_> {
             turns::beyond_limits(arm, &new.q) > turns::beyond_limits(arm, &recordings[at].q) + BEYOND_LIMITS
         });
         let is_certain = self.is_shown && !self.may_be_base && nats > CERTAIN && !leaves_limits;
-        let is_one = self
-            .rivals
-            .iter()
-            .all(|other| other.correction.as_sign_of_the_torque() == Some(best.correction));
+        let is_one = self.rivals.iter().all(|other| other.correction.as_sign_of_the_torque() == Some(best.correction));
         let unexplained = |agreement: &Agreement| {
             let share = agreement.unexplained[self.shown_at].min(1.0);
             format!("{} %", rounded(100.0 * share, 2))
@@ -286,11 +269,7 @@ impl Best<'_> {
             names[self.shown_at],
             unexplained(as_it_is)
         );
-        let mut others: Vec<String> = self
-            .rivals
-            .iter()
-            .filter_map(|next| next.correction.words(&names))
-            .collect();
+        let mut others: Vec<String> = self.rivals.iter().filter_map(|next| next.correction.words(&names)).collect();
         others.dedup();
         if !others.is_empty() {
             text += &format!(". As likely: {}", others.join(", or "));
@@ -314,11 +293,7 @@ impl Best<'_> {
         Proposal {
             joint: best.correction.joint().map(|joint| names[joint].to_owned()),
             text,
-            changes: if is_one && is_whole && !leaves_limits {
-                best.correction.changes(&names)
-            } else {
-                Vec::new()
-            },
+            changes: if is_one && is_whole && !leaves_limits { best.correction.changes(&names) } else { Vec::new() },
             is_certain,
             recordings: best.recordings.clone(),
         }

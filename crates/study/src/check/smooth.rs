@@ -23,10 +23,7 @@ pub struct Smooth {
 /// The sign of the `speeds`, smooth below a part of the largest one.
 fn dry(speeds: &[f64]) -> Vec<f64> {
     let top = speeds.iter().fold(1e-9_f64, |top, speed| top.max(speed.abs()));
-    speeds
-        .iter()
-        .map(|speed| (speed / (DIRECTION_UNCERTAIN * top)).tanh())
-        .collect()
+    speeds.iter().map(|speed| (speed / (DIRECTION_UNCERTAIN * top)).tanh()).collect()
 }
 
 /// Weights of a least-squares parabola over 2 `side` + 1 ticks: value, slope (1/s) and bend (1/s²).
@@ -48,9 +45,7 @@ impl Parabola {
             side,
             value: places().map(|x| (fourth - x * x * second) / determinant).collect(),
             slope: places().map(|x| x / (second * period)).collect(),
-            bend: places()
-                .map(|x| 2.0 * (count * x * x - second) / (determinant * period * period))
-                .collect(),
+            bend: places().map(|x| 2.0 * (count * x * x - second) / (determinant * period * period)).collect(),
         }
     }
 
@@ -74,11 +69,7 @@ impl Smooth {
         let sample = |weights: &[f64], signal: &recording::Signal| -> Vec<Vec<f64>> {
             let of = |joint: &usize| {
                 let values = &signal[*joint];
-                ticks
-                    .iter()
-                    .step_by(stride)
-                    .map(|&tick| parabola.at(weights, values, tick))
-                    .collect()
+                ticks.iter().step_by(stride).map(|&tick| parabola.at(weights, values, tick)).collect()
             };
             joints.iter().map(of).collect()
         };

@@ -24,18 +24,8 @@ const UNITS: [Unit; 4] = [
         remedy: "tau_unit = \"mN m\", or tau_scale = 0.001",
         key: ("tau_scale", Value::Number(1e-3)),
     },
-    Unit {
-        factor: 1e2,
-        name: "N cm",
-        remedy: "tau_scale = 0.01",
-        key: ("tau_scale", Value::Number(1e-2)),
-    },
-    Unit {
-        factor: 1e6,
-        name: "µN m (or µN)",
-        remedy: "tau_scale = 1e-6",
-        key: ("tau_scale", Value::Number(1e-6)),
-    },
+    Unit { factor: 1e2, name: "N cm", remedy: "tau_scale = 0.01", key: ("tau_scale", Value::Number(1e-2)) },
+    Unit { factor: 1e6, name: "µN m (or µN)", remedy: "tau_scale = 1e-6", key: ("tau_scale", Value::Number(1e-6)) },
     Unit {
         factor: 1e-3,
         name: "kN m (or kN), or the masses of the URDF in g",
@@ -54,9 +44,7 @@ pub fn may_be_decimal(factor: f64) -> bool {
 pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Change>)> {
     // A channel without a torque has no unit.
     let has_torque = |joint: usize| fit.size[joint] > 1e-9;
-    let moving: Vec<usize> = (0..moves.len())
-        .filter(|&joint| moves[joint] && has_torque(joint))
-        .collect();
+    let moving: Vec<usize> = (0..moves.len()).filter(|&joint| moves[joint] && has_torque(joint)).collect();
     let is_evident = |joint: &usize| fit.factor[*joint] > 0.0 && fit.needs_model(*joint);
     let evident: Vec<usize> = moving.iter().copied().filter(is_evident).collect();
     let all = |outside: &dyn Fn(f64) -> bool| {
@@ -97,23 +85,15 @@ pub fn of(names: &[&str], moves: &[bool], fit: &Fit) -> Option<(String, Vec<Chan
         let near = |found: f64| NEAR_UNIT.contains(&(found / unit.factor));
         near(middle) && near((least * most).sqrt())
     });
-    let said = format!(
-        "the torques of all joints that move are about {} times the model's",
-        rounded(middle, 2)
-    );
+    let said = format!("the torques of all joints that move are about {} times the model's", rounded(middle, 2));
     Some(match decimal {
         Some(Unit { name, remedy, key, .. }) => (
             format!("{said}: are they in {name}? Say so for each joint in a column map (--map): {remedy}"),
-            names
-                .iter()
-                .map(|name| Change::new(name, key.0, key.1.clone()))
-                .collect(),
+            names.iter().map(|name| Change::new(name, key.0, key.1.clone())).collect(),
         ),
         None => {
-            let each: Vec<String> = evident
-                .iter()
-                .map(|&joint| format!("{} {}", names[joint], rounded(fit.factor[joint], 2)))
-                .collect();
+            let each: Vec<String> =
+                evident.iter().map(|&joint| format!("{} {}", names[joint], rounded(fit.factor[joint], 2))).collect();
             let text = format!(
                 "{said} ({}): another unit, motor currents, or the motor's side of the gears? Give each joint's tau_unit, \
                  tau_scale or gear in a column map (--map); the factors below are those of the URDF's masses",
@@ -153,18 +133,10 @@ mod tests {
         // Of 12 to 4 N m per A, and with a payload that the URDF does not have.
         for currents in [&[0.08, 0.07, 0.15, 0.3, 0.55][..], &[0.1, 0.12, 0.22], &[0.1, 0.15]] {
             let said = said(currents);
-            assert!(
-                said.as_ref().is_some_and(|said| said.contains("motor currents")),
-                "{said:?}"
-            );
+            assert!(said.as_ref().is_some_and(|said| said.contains("motor currents")), "{said:?}");
         }
         // A model may be wrong by much, and on single joints by more.
-        for torques in [
-            &[0.3, 0.4, 0.3, 0.35, 0.3][..],
-            &[0.1, 0.12, 0.15, 0.19, 0.8],
-            &[0.1, 0.3],
-            &[1.0, 0.9, 0.1],
-        ] {
+        for torques in [&[0.3, 0.4, 0.3, 0.35, 0.3][..], &[0.1, 0.12, 0.15, 0.19, 0.8], &[0.1, 0.3], &[1.0, 0.9, 0.1]] {
             assert_eq!(said(torques), None, "{torques:?}");
         }
     }

@@ -55,9 +55,7 @@ pub fn beyond_limits(arm: &Arm, q: &[Vec<f64>]) -> f64 {
 /// The least and the largest of the finite values; the first is larger if there are none.
 pub(crate) fn range(q: &[f64]) -> (f64, f64) {
     let known = q.iter().copied().filter(|q| q.is_finite());
-    known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| {
-        (low.min(q), high.max(q))
-    })
+    known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(q), high.max(q)))
 }
 
 /// The whole turns between the middle of a range and that of the limits.

@@ -38,9 +38,7 @@ impl Correction {
     pub fn changes(self, names: &[&str]) -> Vec<Change> {
         let number = |joint: usize, key, value| Change::new(names[joint], key, Value::Number(value));
         let inverted = |joints: Range<usize>, keys: &[&'static str]| {
-            joints
-                .flat_map(|joint| keys.iter().map(move |key| number(joint, key, -1.0)))
-                .collect()
+            joints.flat_map(|joint| keys.iter().map(move |key| number(joint, key, -1.0))).collect()
         };
         let exchanged = |pairs: &[(usize, usize)], keys: &[&'static str]| {
             let of = |&(at, other): &(usize, usize)| {

@@ -22,43 +22,23 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
     vec![
         Effect::of(&ViscousFriction).on(joint()).with("coefficient", 0.1),
         Effect::of(&CoulombFriction).on(joint()).with("level", 2.0),
-        Effect::of(&FrictionAsymmetry)
-            .on(joint())
-            .with("positive", 1.0 / 3.0)
-            .with("negative", 0.25),
+        Effect::of(&FrictionAsymmetry).on(joint()).with("positive", 1.0 / 3.0).with("negative", 0.25),
         Effect::of(&StribeckFriction)
             .on(joint())
             .with("coulomb", 1.0)
             .with("breakaway", 1.5)
             .with("velocity", 0.02)
             .with("exponent", 1.0),
-        Effect::of(&LoadDependentFriction)
-            .on(joint())
-            .with("coulomb", 1e-9)
-            .with("gain", 0.1),
-        Effect::of(&ThermalDrift)
-            .on(joint())
-            .with("coulomb", 1.0)
-            .with("amplitude", 0.4)
-            .with("time_constant", 600.0),
-        Effect::of(&QuadraticDrag)
-            .on(joint())
-            .with("coefficient", 0.3)
-            .with("exponent", 2.0),
+        Effect::of(&LoadDependentFriction).on(joint()).with("coulomb", 1e-9).with("gain", 0.1),
+        Effect::of(&ThermalDrift).on(joint()).with("coulomb", 1.0).with("amplitude", 0.4).with("time_constant", 600.0),
+        Effect::of(&QuadraticDrag).on(joint()).with("coefficient", 0.3).with("exponent", 2.0),
         Effect::of(&RotorInertia).on(joint()).with("inertia", 0.2),
         Effect::of(&TorqueScale).on(joint()).with("factor", 1.1),
         Effect::of(&TorqueOffset).on(joint()).with("offset", -0.1),
-        Effect::of(&TorqueRipple)
-            .on(joint())
-            .with("amplitude", 0.2)
-            .with("periods", 12.0)
-            .with("phase", 0.3),
+        Effect::of(&TorqueRipple).on(joint()).with("amplitude", 0.2).with("periods", 12.0).with("phase", 0.3),
         Effect::of(&TorqueSaturation).on(joint()).with("limit", 20.0),
         Effect::of(&ActuationDelay).on(joint()).with("delay", 0.004),
-        Effect::of(&JointElasticity)
-            .on(joint())
-            .with("stiffness", 1e4)
-            .with("damping", 3.0),
+        Effect::of(&JointElasticity).on(joint()).with("stiffness", 1e4).with("damping", 3.0),
         Effect::of(&Backlash).on(joint()).with("halfgap", 0.001),
         Effect::of(&TransmissionCoupling)
             .on(joint())
@@ -73,23 +53,15 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
             .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.02]),
         Effect::of(&LinkInertialError).on(joint()).with("relative", -0.1),
         Effect::of(&InertialScale).with("factor", 1.05),
-        Effect::of(&GravityMisalignment)
-            .with("angle", 0.05)
-            .with("axis", [0.0, 1.0, 0.0]),
+        Effect::of(&GravityMisalignment).with("angle", 0.05).with("axis", [0.0, 1.0, 0.0]),
         Effect::of(&EncoderOffset).on(joint()).with("offset", 0.01),
-        Effect::of(&Spring)
-            .on(joint())
-            .with("stiffness", 10.0)
-            .with("rest", 0.1),
+        Effect::of(&Spring).on(joint()).with("stiffness", 10.0).with("rest", 0.1),
         Effect::of(&Spring)
             .on(joint())
             .with("stiffness", 0.0)
             .with("rest", 0.0)
             .with("curve", vec![[-1.0, 2.0], [0.5, 1.0]]),
-        Effect::of(&ExternalContact)
-            .with("start", 12.0)
-            .with("duration", 0.5)
-            .with("force", [0.0, 10.0, -5.0]),
+        Effect::of(&ExternalContact).with("start", 12.0).with("duration", 0.5).with("force", [0.0, 10.0, -5.0]),
     ]
 }
 
@@ -97,20 +69,14 @@ fn all(joint: &str, other: &str) -> Vec<Effect> {
 fn every_effect_is_read_as_written() {
     let arm = arm();
     let joints = joints(&arm);
-    let file = EffectFile {
-        robot: Some(arm.name().to_owned()),
-        effects: all(&joints[1], &joints[2]),
-    };
+    let file = EffectFile { robot: Some(arm.name().to_owned()), effects: all(&joints[1], &joints[2]) };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("corrected.toml");
     file.write(&path).expect("it is written");
     assert_eq!(EffectFile::load(&path, &arm).expect("it is read"), file);
     let text = file.to_text().expect("it is text");
     assert!(text.contains("level = 2.0 # N m\n"), "{text}");
-    assert!(
-        text.contains("com = [0.0, 0.01, 0.1] # m, in the tool's frame\n"),
-        "{text}"
-    );
+    assert!(text.contains("com = [0.0, 0.01, 0.1] # m, in the tool's frame\n"), "{text}");
 }
 
 #[test]
@@ -135,10 +101,7 @@ fn errors_name_line_and_remedy() {
             "effect = \"coulomb_friction\"\nlevel = 2\n".to_owned(),
             ":7: the line joint = \"…\" is missing; the robot has",
         ),
-        (
-            format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\n"),
-            ":7: the line level = … is missing",
-        ),
+        (format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\n"), ":7: the line level = … is missing"),
         (
             format!("effect = \"coulomb_friction\"\njoint = \"{joint}x\"\nlevel = 2\n"),
             &format!(":9: coulomb_friction: the robot has no joint \"{joint}x\""),
@@ -161,18 +124,12 @@ fn errors_name_line_and_remedy() {
         let error =
             EffectFile::parse(format!("{head}{text}"), Path::new("known.toml"), &arm).expect_err("it is refused");
         let error = error.to_string();
-        assert!(
-            error.starts_with("known.toml:") && error.contains(expected),
-            "{error}\n is not\n{expected}"
-        );
+        assert!(error.starts_with("known.toml:") && error.contains(expected), "{error}\n is not\n{expected}");
     }
     for (text, expected) in [
         ("schema = \"testbed.model/9\"\n", "known.toml:1: the schema is"),
         ("[[effects]]\n", "the line schema = \"testbed.model/1\" is missing"),
-        (
-            "schema = \"testbed.model/1\"\nrobot = \"other\"\n",
-            "known.toml:2: the effects are of robot \"other\"",
-        ),
+        ("schema = \"testbed.model/1\"\nrobot = \"other\"\n", "known.toml:2: the effects are of robot \"other\""),
     ] {
         let error = EffectFile::parse(text.to_owned(), Path::new("known.toml"), &arm).expect_err("it is refused");
         assert!(error.to_string().contains(expected), "{error}");
@@ -193,17 +150,9 @@ fn an_effect_given_twice_is_refused_with_both_places() {
         let text = format!("schema = \"testbed.model/1\"\n{}", effects.concat());
         EffectFile::parse(text, Path::new("k.toml"), &arm()).map_err(|error| error.to_string())
     };
-    let twice = [
-        friction("joint1", "1.0"),
-        friction("joint2", "1.0"),
-        friction("joint1", "2.0"),
-    ];
+    let twice = [friction("joint1", "1.0"), friction("joint2", "1.0"), friction("joint1", "2.0")];
     let found = parse(&twice).expect_err("it is refused");
-    for part in [
-        "k.toml:10: viscous_friction on joint1 is given twice",
-        "first at k.toml:2",
-        "keep one",
-    ] {
+    for part in ["k.toml:10: viscous_friction on joint1 is given twice", "first at k.toml:2", "keep one"] {
         assert!(found.contains(part), "\"{part}\" is missing from: {found}");
     }
     assert!(parse(&twice[..2]).is_ok());
@@ -211,16 +160,10 @@ fn an_effect_given_twice_is_refused_with_both_places() {
     assert!(parse(&[ripple("10.0"), ripple("10.0")]).is_err());
     let payload = |mass: &str| format!("[[effects]]\neffect = \"payload\"\nmass = {mass}\ncom = [0.0, 0.0, 0.1]\n");
     // A known body, and another that was found in addition.
-    assert_eq!(
-        parse(&[payload("1.0"), payload("-0.3")]).map(|file| file.effects.len()),
-        Ok(2)
-    );
+    assert_eq!(parse(&[payload("1.0"), payload("-0.3")]).map(|file| file.effects.len()), Ok(2));
     assert!(parse(&[payload("1.0"), payload("1.0")]).is_err());
     let found = parse(&[friction("joint1", "1e308")]).expect_err("it is refused");
-    assert!(
-        found.contains("k.toml:5: coefficient is 1e308") && found.len() < 200,
-        "{found}"
-    );
+    assert!(found.contains("k.toml:5: coefficient is 1e308") && found.len() < 200, "{found}");
     // Whole numbers and lists, too.
     assert!(parse(&[friction("joint1", "8352007717348")]).is_err());
     assert!(parse(&[payload("1.0").replace("0.1]", "1e13]")]).is_err());

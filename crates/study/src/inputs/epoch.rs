@@ -20,18 +20,9 @@ fn delays(epochs: &[Option<i64>]) -> Vec<f64> {
     let dates = epochs.iter().flatten().filter(|&&epoch| epoch >= DATE);
     let begins = dates.min().copied().unwrap_or(0);
     // The reader subtracts the leading digits of a controller's clock, but only from recordings late enough to have them.
-    let small: Vec<i64> = epochs
-        .iter()
-        .flatten()
-        .filter(|&&epoch| epoch < DATE)
-        .copied()
-        .collect();
+    let small: Vec<i64> = epochs.iter().flatten().filter(|&&epoch| epoch < DATE).copied().collect();
     let is_alone = small.len() == epochs.len();
-    let begins_small = if is_alone {
-        small.iter().min().copied().unwrap_or(0)
-    } else {
-        0
-    };
+    let begins_small = if is_alone { small.iter().min().copied().unwrap_or(0) } else { 0 };
     let delay = |epoch: &Option<i64>| match *epoch {
         None => 0.0,
         Some(epoch) if epoch >= DATE => (epoch - begins) as f64,

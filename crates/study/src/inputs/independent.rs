@@ -55,12 +55,7 @@ mod tests {
     use super::*;
 
     fn recording(phase: f64, ticks: std::ops::Range<usize>) -> RegularRecording {
-        let signal = |amplitude: f64| {
-            ticks
-                .clone()
-                .map(|k| amplitude * (0.011 * k as f64 + phase).sin())
-                .collect()
-        };
+        let signal = |amplitude: f64| ticks.clone().map(|k| amplitude * (0.011 * k as f64 + phase).sin()).collect();
         RegularRecording {
             period: 0.01,
             present: vec![true; ticks.len()],

@@ -19,13 +19,7 @@ pub(super) fn order(
     map: Option<&Path>,
 ) -> anyhow::Result<Vec<usize>> {
     let known: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
-    let quoted = |names: &[String]| {
-        names
-            .iter()
-            .map(|name| format!("\"{name}\""))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
+    let quoted = |names: &[String]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
     let lost = arm
         .fixed_joints()
         .iter()
@@ -38,17 +32,9 @@ pub(super) fn order(
         );
     }
     let is_fixed = |joint: &str| arm.fixed_joints().iter().any(|fixed| fixed.name == joint);
-    let foreign: Vec<String> = recording
-        .joints
-        .iter()
-        .filter(|joint| !known.contains(joint) && !is_fixed(joint))
-        .cloned()
-        .collect();
-    let lacking: Vec<String> = known
-        .iter()
-        .filter(|joint| !recording.joints.contains(joint))
-        .cloned()
-        .collect();
+    let foreign: Vec<String> =
+        recording.joints.iter().filter(|joint| !known.contains(joint) && !is_fixed(joint)).cloned().collect();
+    let lacking: Vec<String> = known.iter().filter(|joint| !recording.joints.contains(joint)).cloned().collect();
     let empty = recording.warnings.iter().find_map(|warning| match warning {
         Warning::JointLeftOut { joint, column } if lacking.contains(joint) => Some((joint, column)),
         _ => None,
@@ -91,9 +77,7 @@ pub(super) fn order(
         );
     }
     if let (Some(joint), Some(map)) = (lacking.first(), map) {
-        let hint = foreign
-            .first()
-            .map_or_else(String::new, |other| format!(" (is [joints.{other}] meant?)"));
+        let hint = foreign.first().map_or_else(String::new, |other| format!(" (is [joints.{other}] meant?)"));
         bail!(
             "{}: has no [joints.{joint}] for {} of {}{hint}; add a table for each joint of the arm",
             map.display(),
@@ -102,9 +86,8 @@ pub(super) fn order(
         );
     }
     if let Some(joint) = lacking.first() {
-        let hint = nearest(joint, &foreign).map_or_else(String::new, |near| {
-            format!("; the name of its column q_{near} is similar")
-        });
+        let hint = nearest(joint, &foreign)
+            .map_or_else(String::new, |near| format!("; the name of its column q_{near} is similar"));
         bail!(
             "{name}: has no column q_{joint} for {} of {}{hint}; record all joints of the arm, name their columns in a column map (--map), or fix a joint that did not move: --lock {joint}=VALUE",
             quoted(&lacking),
@@ -113,34 +96,22 @@ pub(super) fn order(
     }
     if let Some(joint) = foreign.first() {
         let fixed: Vec<String> = arm.fixed_joints().iter().map(|joint| joint.name.clone()).collect();
-        let unrecorded: Vec<String> = fixed
-            .iter()
-            .filter(|name| !recording.joints.contains(name))
-            .cloned()
-            .collect();
+        let unrecorded: Vec<String> = fixed.iter().filter(|name| !recording.joints.contains(name)).cloned().collect();
         let and_fixed = match unrecorded.as_slice() {
             [] => String::new(),
             names => format!(", and without a column {}", quoted(names)),
         };
-        let rename = nearest(joint, &unrecorded).map_or_else(String::new, |near| {
-            format!("rename the column to q_{near} if \"{near}\" is meant, ")
-        });
+        let rename = nearest(joint, &unrecorded)
+            .map_or_else(String::new, |near| format!("rename the column to q_{near} if \"{near}\" is meant, "));
         bail!(
             "{name}: column q_{joint}: {} {} of {}, which has {}{and_fixed}; {rename}leave the column out with a column map (--map), or give the URDF of the robot that was recorded",
             quoted(&foreign),
-            if foreign.len() == 1 {
-                "is not a joint"
-            } else {
-                "are not joints"
-            },
+            if foreign.len() == 1 { "is not a joint" } else { "are not joints" },
             arm.name(),
             quoted(&known)
         );
     }
-    Ok(known
-        .iter()
-        .filter_map(|joint| recording.joints.iter().position(|found| found == joint))
-        .collect())
+    Ok(known.iter().filter_map(|joint| recording.joints.iter().position(|found| found == joint)).collect())
 }
 
 /// The recording with the joints of `arm` in its order, if it has all of them; other joints are omitted.
@@ -173,10 +144,7 @@ pub(super) fn reordered(mut recording: RegularRecording, order: &[usize]) -> Reg
 fn in_another_spelling(found: &[String], known: &[String]) -> Option<Vec<usize>> {
     let plain = |name: &String| -> String {
         let last = name.rsplit(['/', ':']).next().unwrap_or_default();
-        last.chars()
-            .filter(|c| c.is_alphanumeric())
-            .flat_map(char::to_lowercase)
-            .collect()
+        last.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
     };
     let [found, known] = [found, known].map(|names| names.iter().map(plain).collect::<Vec<String>>());
     // What one name has more than the other.
@@ -246,23 +214,13 @@ mod tests {
             ["joint_2_left", "joint_1_left"],
             ["2", "1"],
         ] {
-            assert_eq!(
-                in_another_spelling(&names(&found), &known),
-                Some(vec![1, 0]),
-                "{found:?}"
-            );
+            assert_eq!(in_another_spelling(&names(&found), &known), Some(vec![1, 0]), "{found:?}");
         }
         // Which of two is meant is unknown, and not all are there.
-        assert_eq!(
-            in_another_spelling(&names(&["left/joint1", "right/joint1", "joint2"]), &known),
-            None
-        );
+        assert_eq!(in_another_spelling(&names(&["left/joint1", "right/joint1", "joint2"]), &known), None);
         assert_eq!(in_another_spelling(&names(&["Joint1"]), &known), None);
         // Another word for each joint, and another number.
-        assert_eq!(
-            in_another_spelling(&names(&["left_joint_1", "right_joint_2"]), &known),
-            None
-        );
+        assert_eq!(in_another_spelling(&names(&["left_joint_1", "right_joint_2"]), &known), None);
         assert_eq!(in_another_spelling(&names(&["joint_11", "joint_21"]), &known), None);
     }
 }

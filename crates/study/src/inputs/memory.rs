@@ -48,10 +48,7 @@ mod tests {
         let ticks = 100 * seconds;
         RegularRecording {
             period: 0.01,
-            segments: vec![Segment {
-                ticks: 0..ticks,
-                start: 0.0,
-            }],
+            segments: vec![Segment { ticks: 0..ticks, start: 0.0 }],
             present: vec![true; ticks],
             ..RegularRecording::default()
         }

@@ -37,18 +37,10 @@ fn held(arm: &Arm) -> Vec<Effect> {
         Effect::of(&CoulombFriction).on(name(1)).with("level", 1.25),
         Effect::of(&CoulombFriction).on(name(0)).with("level", 0.5),
         Effect::of(&RotorInertia).on(name(1)).with("inertia", 0.75),
-        Effect::of(&Spring)
-            .on(name(0))
-            .with("stiffness", 20.0)
-            .with("rest", 0.3),
-        Effect::of(&Spring)
-            .on(name(0))
-            .with("stiffness", 5.0)
-            .with("rest", -0.7),
+        Effect::of(&Spring).on(name(0)).with("stiffness", 20.0).with("rest", 0.3),
+        Effect::of(&Spring).on(name(0)).with("stiffness", 5.0).with("rest", -0.7),
         Effect::of(&EncoderOffset).on(name(1)).with("offset", 0.05),
-        Effect::of(&GravityMisalignment)
-            .with("angle", 0.1)
-            .with("axis", [0.6, 0.8, 0.0]),
+        Effect::of(&GravityMisalignment).with("angle", 0.1).with("axis", [0.6, 0.8, 0.0]),
         Effect::of(&Payload)
             .with("mass", 2.0)
             .with("com", [0.01, 0.02, 0.1])
@@ -63,34 +55,20 @@ fn what_mjcf_cannot_hold_is_listed() {
     let mut effects = held(&arm);
     let Export { text, omitted } = mjcf(&arm, &effects).expect("it is written");
     assert_eq!(omitted, ["shapes and meshes of the links"]);
-    for part in [
-        "<body name=\"payload\"",
-        "stiffness=\"25\"",
-        "springref=\"0.1",
-        "armature=\"0.75\"",
-        "frictionloss=\"1.25\"",
-    ] {
+    for part in
+        ["<body name=\"payload\"", "stiffness=\"25\"", "springref=\"0.1", "armature=\"0.75\"", "frictionloss=\"1.25\""]
+    {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     effects.push(Effect::of(&TorqueOffset).on(&joint).with("offset", 0.5));
     effects.push(
-        Effect::of(&FrictionAsymmetry)
-            .on(arm.joints()[3].name.clone())
-            .with("positive", 3.0)
-            .with("negative", 1.0),
+        Effect::of(&FrictionAsymmetry).on(arm.joints()[3].name.clone()).with("positive", 3.0).with("negative", 1.0),
     );
-    effects.push(
-        Effect::of(&Payload)
-            .with("mass", 1.0)
-            .with("com", [0.0; 3])
-            .since(Some(2.0)),
-    );
+    effects.push(Effect::of(&Payload).with("mass", 1.0).with("com", [0.0; 3]).since(Some(2.0)));
     let Export { text, omitted } = mjcf(&arm, &effects).expect("it is written");
-    for (line, start) in omitted.iter().zip([
-        "torque_offset of ",
-        "friction_asymmetry of axis4 (the diff",
-        "payload: mass 1.000 kg",
-    ]) {
+    for (line, start) in
+        omitted.iter().zip(["torque_offset of ", "friction_asymmetry of axis4 (the diff", "payload: mass 1.000 kg"])
+    {
         assert!(line.starts_with(start) && text.contains(line.as_str()), "{line}");
     }
     assert_eq!(omitted.len(), 4);
@@ -104,15 +82,8 @@ fn what_mjcf_cannot_hold_is_listed() {
 #[test]
 fn an_impossible_tensor_is_replaced_by_the_nearest_and_reported() {
     let omitted = mjcf(&read(PUMA), &[]).expect("it is written").omitted;
-    assert!(
-        omitted[0].contains("link \"link3\"") && omitted.len() == 2,
-        "{omitted:?}"
-    );
-    let flat = Inertia {
-        mass: 1.0,
-        com: [0.0; 3].into(),
-        tensor: Matrix3::from_diagonal(&[0.1, 0.2, 0.5].into()),
-    };
+    assert!(omitted[0].contains("link \"link3\"") && omitted.len() == 2, "{omitted:?}");
+    let flat = Inertia { mass: 1.0, com: [0.0; 3].into(), tensor: Matrix3::from_diagonal(&[0.1, 0.2, 0.5].into()) };
     let (body, is_wrong) = nearest_body(&flat);
     let moments = body.tensor.diagonal();
     assert!(is_wrong && moments[0] + moments[1] >= moments[2], "{moments}");
@@ -136,10 +107,8 @@ fn rows(arm: &Arm, effects: &[Effect]) -> String {
             middle + 0.9 * half * wave(j, 0.37, 1.1)
         };
         let q: Vec<f64> = (0..dof).map(within).collect();
-        let qd: Vec<f64> = (0..dof)
-            .map(|j| wave(j, 0.53, 2.3))
-            .map(|speed| 2.0 * speed + 0.3 * speed.signum())
-            .collect();
+        let qd: Vec<f64> =
+            (0..dof).map(|j| wave(j, 0.53, 2.3)).map(|speed| 2.0 * speed + 0.3 * speed.signum()).collect();
         let qdd: Vec<f64> = (0..dof).map(|j| 4.0 * wave(j, 0.71, 0.7)).collect();
         model.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
         let tau: Vec<f64> = (0..dof).map(|joint| prediction.torque(joint)).collect();
@@ -163,26 +132,15 @@ fn mujoco_needs_the_same_torques() {
     // The tensor of the Puma's link3 is physically impossible, also when scaled.
     let mut bodies: Vec<Inertia> = read(PUMA).joints().iter().map(|joint| joint.inertia).collect();
     bodies[2] = nearest_body(&bodies[2]).0;
-    let robots = [
-        ("puma560", read(PUMA).with_inertias(&bodies)),
-        ("seven_axis", read(SEVEN)),
-        ("prismatic", read(PRISMATIC)),
-    ];
+    let robots =
+        [("puma560", read(PUMA).with_inertias(&bodies)), ("seven_axis", read(SEVEN)), ("prismatic", read(PRISMATIC))];
     for (name, arm) in robots {
         for (kind, effects) in [("plain", Vec::new()), ("corrected", held(&arm))] {
             let (model, motion) = (folder.path().join("robot.xml"), folder.path().join("motion.csv"));
             std::fs::write(&model, mjcf(&arm, &effects).expect("it is written").text).expect("it writes");
             std::fs::write(&motion, rows(&arm, &effects)).expect("it writes");
-            let output = Command::new(&python)
-                .arg(script)
-                .arg(&model)
-                .arg(&motion)
-                .output()
-                .expect("Python runs");
-            let (said, wrong) = (
-                String::from_utf8_lossy(&output.stdout),
-                String::from_utf8_lossy(&output.stderr),
-            );
+            let output = Command::new(&python).arg(script).arg(&model).arg(&motion).output().expect("Python runs");
+            let (said, wrong) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
             print!("{name}, {kind}: {said}");
             assert!(output.status.success(), "{name}, {kind}: {said}{wrong}");
         }

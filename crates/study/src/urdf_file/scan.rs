@@ -111,16 +111,12 @@ struct Open {
 }
 
 fn number(text: &str) -> anyhow::Result<f64> {
-    text.trim()
-        .parse()
-        .with_context(|| format!("\"{text}\" is not a number"))
+    text.trim().parse().with_context(|| format!("\"{text}\" is not a number"))
 }
 
 fn attribute(tag: &BytesStart<'_>, name: &str) -> anyhow::Result<Option<String>> {
     let found = tag.try_get_attribute(name)?;
-    Ok(found
-        .map(|attribute| attribute.unescape_value().map(std::borrow::Cow::into_owned))
-        .transpose()?)
+    Ok(found.map(|attribute| attribute.unescape_value().map(std::borrow::Cow::into_owned)).transpose()?)
 }
 
 impl Places {
@@ -156,10 +152,7 @@ impl Places {
                     }
                 }
                 Event::Empty(tag) if depth == 1 => {
-                    let tag_text = text[here.clone()]
-                        .trim_end_matches('>')
-                        .trim_end_matches('/')
-                        .trim_end();
+                    let tag_text = text[here.clone()].trim_end_matches('>').trim_end_matches('/').trim_end();
                     if let Some(mut empty) = opened(&tag)? {
                         let place = Place::Within(here, tag_text.to_owned());
                         places.close(text, &mut empty, place)?;
@@ -208,22 +201,10 @@ impl Places {
                 }
                 Place::Before(_) | Place::Within(..) => Inertia::zero(),
             };
-            self.links.insert(
-                name,
-                LinkPlaces {
-                    inertial: place,
-                    inertia,
-                },
-            );
+            self.links.insert(name, LinkPlaces { inertial: place, inertia });
         } else {
             let is_diagnosed = element.is_diagnosed;
-            self.joints.insert(
-                name,
-                JointPlaces {
-                    dynamics: place,
-                    is_diagnosed,
-                },
-            );
+            self.joints.insert(name, JointPlaces { dynamics: place, is_diagnosed });
         }
         Ok(())
     }

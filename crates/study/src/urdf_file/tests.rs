@@ -60,10 +60,7 @@ fn assert_same_dynamics(written: &Arm, corrected: &Corrected) {
         written.inverse_dynamics(&mut scratch, &q, &qd, &qdd, &mut found);
         for j in 0..dof {
             let (found, expected) = (found[j], expected.rigid[j]);
-            assert!(
-                (found - expected).abs() < 1e-9 * (1.0 + expected.abs()),
-                "joint {j}: {found}, {expected}"
-            );
+            assert!((found - expected).abs() < 1e-9 * (1.0 + expected.abs()), "joint {j}: {found}, {expected}");
         }
     }
 }
@@ -136,26 +133,15 @@ fn effects_of_another_robot_are_refused() {
 fn what_a_urdf_holds_in_part_is_written_and_listed() {
     let arm = read(TWO);
     let found = [
-        Effect::of(&FrictionAsymmetry)
-            .on("a")
-            .with("positive", 3.0)
-            .with("negative", 2.0),
-        Effect::of(&StribeckFriction)
-            .on("b")
-            .with("coulomb", 1.0)
-            .with("breakaway", 1.5)
-            .with("velocity", 0.1),
+        Effect::of(&FrictionAsymmetry).on("a").with("positive", 3.0).with("negative", 2.0),
+        Effect::of(&StribeckFriction).on("b").with("coulomb", 1.0).with("breakaway", 1.5).with("velocity", 0.1),
     ];
     let Export { text, omitted } = corrected_urdf(TWO, &arm, &found).expect("it is written");
     let written = read(&text);
     let friction: Vec<f64> = written.joints().iter().map(|joint| joint.friction).collect();
     assert_eq!(friction, [2.5, 1.0]);
     assert_eq!(omitted.len(), 2);
-    assert!(
-        omitted[0].starts_with("friction_asymmetry of a (the difference between the directions"),
-        "{}",
-        omitted[0]
-    );
+    assert!(omitted[0].starts_with("friction_asymmetry of a (the difference between the directions"), "{}", omitted[0]);
     assert!(text.contains("0 of 2 effects"), "{text}");
     assert_eq!(diagnosed_joints(&text).expect("it reads"), ["a", "b"]);
 }
@@ -169,10 +155,8 @@ fn inertial_parameters_are_written() {
         com: [0.01, -0.02, 0.3].into(),
         tensor: arm::Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.04, 0.002, 0.0, 0.002, 0.02),
     };
-    let found = [
-        InertialParameters::effect("b", &body),
-        Effect::of(&Payload).with("mass", 0.5).with("com", [0.0, 0.1, 0.2]),
-    ];
+    let found =
+        [InertialParameters::effect("b", &body), Effect::of(&Payload).with("mass", 0.5).with("com", [0.0, 0.1, 0.2])];
     let written = read(&corrected_urdf(TWO, &arm, &found).expect("it is written").text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &found).expect("they are physical"));
     assert!((written.joints()[1].inertia.mass - 2.25).abs() < 1e-12);
@@ -211,10 +195,7 @@ fn a_payload_that_leaves_no_body_is_written_as_the_nearest_one() {
     );
     let corrected = corrected_urdf(&urdf, &read(&urdf), &[payload]).expect("it can be written");
     assert!(
-        corrected
-            .omitted
-            .iter()
-            .any(|line| line.contains("the inertia tensor of link \"tool\"")),
+        corrected.omitted.iter().any(|line| line.contains("the inertia tensor of link \"tool\"")),
         "{:?}",
         corrected.omitted
     );

@@ -61,9 +61,8 @@ fn parse_lock(text: &str) -> Result<(String, f64), String> {
         .rsplit_once('=')
         .filter(|(joint, _)| !joint.is_empty())
         .ok_or("give JOINT=VALUE, for example finger_joint=0.02")?;
-    let value: f64 = value
-        .parse()
-        .map_err(|_| format!("\"{value}\" is not a number; give the position in rad or m"))?;
+    let value: f64 =
+        value.parse().map_err(|_| format!("\"{value}\" is not a number; give the position in rad or m"))?;
     if !value.is_finite() {
         return Err("give a finite position in rad or m".into());
     }

@@ -16,14 +16,8 @@ pub const RESIDUALS_CREATOR: &str = "testbed residuals";
 
 /// By which an earlier file of `--residuals` at `path` is recognised.
 fn residuals_mark(path: &Path) -> &'static str {
-    let is_parquet = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"));
-    if is_parquet {
-        RESIDUALS_CREATOR
-    } else {
-        "recording,held_out,t,measured_"
-    }
+    let is_parquet = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"));
+    if is_parquet { RESIDUALS_CREATOR } else { "recording,held_out,t,measured_" }
 }
 
 /// The catalogue's effects with their meanings, each wrapped beside its name.
@@ -199,8 +193,7 @@ impl DiagnoseArgs {
     pub fn outputs(&self) -> Vec<OutputFile<'_>> {
         let given = OutputFile::given;
         let files = [
-            self.json_file()
-                .map(|path| OutputFile::json(path, "\"schema\": \"testbed.diagnosis/")),
+            self.json_file().map(|path| OutputFile::json(path, "\"schema\": \"testbed.diagnosis/")),
             given("--report", self.report.as_deref(), &["html", "htm"])
                 .map(|file| file.marked("name=\"generator\" content=\"testbed diagnose\"")),
             self.markdown

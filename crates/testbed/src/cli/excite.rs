@@ -97,9 +97,8 @@ fn parse_limit(text: &str) -> Result<Limit<f64>, String> {
 
 fn parse_range(text: &str) -> Result<Limit<[f64; 2]>, String> {
     let (joint, range) = split(text);
-    let numbers = range
-        .split_once(':')
-        .and_then(|(low, high)| Some([low.parse::<f64>().ok()?, high.parse::<f64>().ok()?]));
+    let numbers =
+        range.split_once(':').and_then(|(low, high)| Some([low.parse::<f64>().ok()?, high.parse::<f64>().ok()?]));
     match numbers {
         Some([low, high]) if low < high && low.is_finite() && high.is_finite() => Ok((joint, [low, high])),
         _ => Err("give LOW:HIGH or JOINT=LOW:HIGH with two increasing numbers, for example elbow=-1.2:0.8".into()),

@@ -17,9 +17,7 @@ impl Shard {
     /// # Errors
     /// If the text is not of this form.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let parts = text
-            .split_once('/')
-            .and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+        let parts = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
         match parts {
             Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
             _ => Err("give k/n with k from 1 to n, as in 3/20".into()),

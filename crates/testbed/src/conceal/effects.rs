@@ -14,17 +14,9 @@ use study::effect_file;
 /// # Errors
 /// With file, line, reason and remedy.
 pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
-    let text = std::fs::read_to_string(path).with_context(|| {
-        format!(
-            "{}: the effects cannot be read; give a .toml file of effects",
-            path.display()
-        )
-    })?;
-    let source = Source {
-        name: String::new(),
-        path: path.to_owned(),
-        text,
-    };
+    let text = std::fs::read_to_string(path)
+        .with_context(|| format!("{}: the effects cannot be read; give a .toml file of effects", path.display()))?;
+    let source = Source { name: String::new(), path: path.to_owned(), text };
     let (_, tables) = effect_file::tables(&source, arm)?;
     let mut effects = Vec::new();
     for table in tables {
@@ -32,10 +24,7 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         let fail = |reason: String| anyhow!("{}: {reason}", source.place(span.clone()));
         let mut table = table.into_inner();
         // JSON has no such numbers and would omit the key.
-        if let Some((key, value)) = table
-            .iter()
-            .find(|(_, value)| value.as_float().is_some_and(|v| !v.is_finite()))
-        {
+        if let Some((key, value)) = table.iter().find(|(_, value)| value.as_float().is_some_and(|v| !v.is_finite())) {
             return Err(fail(format!("{key} is {value}; give a number")));
         }
         let json = serde_json::to_value(&table).map_err(|error| fail(error.to_string()))?;

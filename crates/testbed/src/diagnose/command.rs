@@ -35,40 +35,19 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn diagnose(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let progress = if args.quiet {
-        Progress::hidden()
-    } else {
-        Progress::new("reading")
-    };
-    let study = args.request().run(&Terminal {
-        args,
-        progress: &progress,
-    });
+    let progress = if args.quiet { Progress::hidden() } else { Progress::new("reading") };
+    let study = args.request().run(&Terminal { args, progress: &progress });
     progress.finish();
-    let Diagnosed {
-        robot,
-        arm,
-        diagnosis,
-        effects,
-    } = study?;
+    let Diagnosed { robot, arm, diagnosis, effects } = study?;
     // From here on, Ctrl-C is deferred, so that no file is left incomplete.
     let deferred = interrupt::Deferred::start();
     let written = write(args, &arm, &robot, &diagnosis, effects);
     drop(deferred);
     print(args, &arm, &diagnosis, &written)?;
     written.files.finish()?;
-    let Report {
-        verdict,
-        findings,
-        not_diagnosed,
-        ..
-    } = &diagnosis.report;
+    let Report { verdict, findings, not_diagnosed, .. } = &diagnosis.report;
     let explains = *verdict == Verdict::NoMismatch && findings.is_empty() && not_diagnosed.is_empty();
-    Ok(if args.fail_on_mismatch && !explains {
-        ExitCode::from(MISMATCH)
-    } else {
-        ExitCode::SUCCESS
-    })
+    Ok(if args.fail_on_mismatch && !explains { ExitCode::from(MISMATCH) } else { ExitCode::SUCCESS })
 }
 
 /// Prints progress and notes on standard error.
@@ -124,10 +103,7 @@ fn print(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, written: &Files<
         }
     }
     if let Some(path) = written.removed {
-        say(format!(
-            "removed: {} of an earlier diagnosis, because this one proposes no motion\n",
-            path.display()
-        ))?;
+        say(format!("removed: {} of an earlier diagnosis, because this one proposes no motion\n", path.display()))?;
     }
     Ok(())
 }
@@ -157,10 +133,7 @@ fn write<'a>(
     }
     let urdf = |_| urdf_file::corrected_urdf(&robot.text, arm, &effects);
     let mjcf = |_| mjcf_file::mjcf(arm, &effects);
-    let exports = [
-        (&args.urdf, args.urdf.as_ref().map(urdf)),
-        (&args.mjcf, args.mjcf.as_ref().map(mjcf)),
-    ];
+    let exports = [(&args.urdf, args.urdf.as_ref().map(urdf)), (&args.mjcf, args.mjcf.as_ref().map(mjcf))];
     for (path, export) in exports {
         let (Some(path), Some(export)) = (path, export) else {
             continue;
@@ -183,9 +156,7 @@ fn write<'a>(
     if let Some(path) = &args.next {
         match (&diagnosis.next, &diagnosis.report.next_experiment) {
             (Some(motion), Some(next)) => {
-                files.add(path, || {
-                    next_file::write(path, &args.robot, &robot.path, arm, next, motion)
-                });
+                files.add(path, || next_file::write(path, &args.robot, &robot.path, arm, next, motion));
             }
             _ => match next_file::remove_earlier(path) {
                 Ok(removed) => written.removed = removed.then_some(path.as_path()),
@@ -228,14 +199,7 @@ fn write_reports(args: &DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis, files: &
 fn write_doubts<'a>(args: &'a DiagnoseArgs, arm: &Arm, diagnosis: &Diagnosis) -> Files<'a> {
     let mut written = Files::default();
     write_reports(args, arm, diagnosis, &mut written.files);
-    let of_a_search = [
-        &args.model,
-        &args.urdf,
-        &args.mjcf,
-        &args.next,
-        &args.trace,
-        &args.residuals,
-    ];
+    let of_a_search = [&args.model, &args.urdf, &args.mjcf, &args.next, &args.trace, &args.residuals];
     let asked = of_a_search.into_iter().flatten().map(PathBuf::as_path);
     for path in asked.chain(args.rerun_file()) {
         written.files.add(path, || {

@@ -94,10 +94,7 @@ fn text(robot: &str, arm: &Arm, next: &NextExperiment, motion: &Reference) -> St
         let before = shows.before.map_or_else(|| "not testable".to_owned(), numbers::short);
         let (effect, after) = (words::wording(shows.effect).name, numbers::short(shows.after));
         let joint = words::joint(shows.joint.as_deref());
-        line(&format!(
-            "  {effect} on {joint}, {}: {before} -> {after}",
-            shows.parameter
-        ));
+        line(&format!("  {effect} on {joint}, {}: {before} -> {after}", shows.parameter));
     }
     line(
         "Required position, velocity and torque of each joint, and what is allowed (the URDF's limits with a margin, near the recorded range):",
@@ -140,10 +137,7 @@ mod tests {
         assert!(check_replaceable(&earlier).is_ok() && !remove_earlier(&earlier).expect("it is gone"));
         let own = at("task.toml", "title = \"mine\"\n");
         let refusal = check_replaceable(&own).expect_err("it is the user's").to_string();
-        assert!(
-            refusal.contains("task.toml") && refusal.contains("another file"),
-            "{refusal}"
-        );
+        assert!(refusal.contains("task.toml") && refusal.contains("another file"), "{refusal}");
         assert!(!remove_earlier(&own).expect("it can be read") && own.exists());
     }
 
@@ -165,10 +159,7 @@ mod tests {
                 frequency: vec![0.3, 0.4, 0.5, 0.6, 0.7, 1e-3],
                 phase: vec![0.0, 1.0, -2.0, 3.0, 4.0, 6.2],
             }],
-            fade: Some(Fade {
-                seconds: 3.0,
-                end: 25.0,
-            }),
+            fade: Some(Fade { seconds: 3.0, end: 25.0 }),
         };
         let folder = tempfile::tempdir().expect("a folder");
         let urdf = folder.path().join("my \"arm\".urdf");

@@ -22,20 +22,13 @@ pub fn check(args: &DiagnoseArgs) -> anyhow::Result<()> {
         output::check_writable(output.path)?;
     }
     args.next.as_deref().map_or(Ok(()), next_file::check_replaceable)?;
-    args.residuals
-        .as_deref()
-        .map_or(Ok(()), |path| Kind::of(path).map(drop))?;
+    args.residuals.as_deref().map_or(Ok(()), |path| Kind::of(path).map(drop))?;
     let robot = Path::new(&args.robot);
     for output in &outputs {
         let path = output.path;
         // The corrected model may be the file of known effects, to which the findings are added.
         let known = args.known.iter().filter(|_| args.model.as_deref() != Some(path));
-        let recordings = args
-            .train
-            .iter()
-            .chain(&args.before)
-            .chain(&args.held_out)
-            .chain(&args.map);
+        let recordings = args.train.iter().chain(&args.before).chain(&args.held_out).chain(&args.map);
         let inputs = recordings.chain(known).map(PathBuf::as_path).chain([robot]);
         output::check_is_no_input(path, inputs)?;
     }

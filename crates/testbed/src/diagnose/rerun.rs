@@ -37,12 +37,7 @@ pub fn write(sink: &Sink, report: &Report, traces: &Traces, arm: &Arm, urdf_path
     let title = format!("diagnosis of {}", report.robot);
     let (end, _) = End::open(sink)?;
     let recording = end.record(&title, arm)?;
-    let shown = Shown {
-        recording: &recording,
-        report,
-        traces,
-        arm,
-    };
+    let shown = Shown { recording: &recording, report, traces, arm };
     let result = shown.log(&title, urdf_path);
     match end {
         End::File(file) => {
@@ -118,11 +113,7 @@ impl Shown<'_> {
             }
         }
         let margin = 0.02 * (span[1] - span[0]);
-        if margin.is_finite() {
-            [span[0] - margin, span[1] + margin]
-        } else {
-            [0.0, 1.0]
-        }
+        if margin.is_finite() { [span[0] - margin, span[1] + margin] } else { [0.0, 1.0] }
     }
 
     fn summary(&self, starts: &[f64]) -> String {
@@ -133,12 +124,7 @@ impl Shown<'_> {
                 continue;
             };
             let held_out = if trace.held_out { " (held out)" } else { "" };
-            recordings += &format!(
-                "- {:.1} to {:.1} s: `{}`{held_out}\n",
-                first + start,
-                last + start,
-                trace.name
-            );
+            recordings += &format!("- {:.1} to {:.1} s: `{}`{held_out}\n", first + start, last + start, trace.name);
         }
         text + &recordings
     }
@@ -153,11 +139,7 @@ impl Shown<'_> {
         let send = |entity: EntityPath, values: &mut dyn Iterator<Item = f64>| {
             let mut values: Vec<f64> = values.step_by(step).collect();
             values.push(f64::NAN);
-            if values.len() == times.len() {
-                send_scalars(self.recording, entity, &time, &values)
-            } else {
-                Ok(())
-            }
+            if values.len() == times.len() { send_scalars(self.recording, entity, &time, &values) } else { Ok(()) }
         };
         for (i, joint) in self.arm.joints().iter().enumerate() {
             let entity = |part: &str| joint_entity(&joint.name).join(&EntityPath::from(part));
@@ -218,9 +200,7 @@ impl Shown<'_> {
             let residual = trace.residual.get(joint);
             let share = |row: &usize| residual.and_then(|r| r.get(*row)).map_or(0.0, |r| r.abs() / spread);
             let colours = picked.iter().map(|row| colour(share(row)));
-            let columns = Ellipsoids3D::update_fields()
-                .with_colors(colours)
-                .columns_of_unit_batches()?;
+            let columns = Ellipsoids3D::update_fields().with_colors(colours).columns_of_unit_batches()?;
             self.recording.send_columns(ball, [time.clone()], columns)?;
         }
         Ok(())
@@ -264,20 +244,12 @@ mod tests {
     #[test]
     fn recordings_on_one_another_follow_each_other() {
         let (report, mut traces, arm) = made_up::diagnosis(1, Plot::Clean);
-        let (recording, _storage) = rerun::RecordingStreamBuilder::new("test")
-            .memory()
-            .expect("a recording");
+        let (recording, _storage) = rerun::RecordingStreamBuilder::new("test").memory().expect("a recording");
         let starts = |traces: &Traces| {
             let recording = &recording;
             let arm = &arm;
             let report = &report;
-            Shown {
-                recording,
-                report,
-                traces,
-                arm,
-            }
-            .starts()
+            Shown { recording, report, traces, arm }.starts()
         };
         assert_eq!(starts(&traces), [0.0; 3]);
         for trace in &mut traces.recordings {

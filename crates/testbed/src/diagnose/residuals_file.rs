@@ -139,10 +139,7 @@ fn parquet(joints: &[&str], traces: &Traces) -> anyhow::Result<Vec<u8>> {
             .with_logical_type(logical);
         Ok(Arc::new(field.build()?))
     };
-    let fields = columns(first, joints)
-        .iter()
-        .map(field)
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let fields = columns(first, joints).iter().map(field).collect::<anyhow::Result<Vec<_>>>()?;
     let schema = Type::group_type_builder("residuals").with_fields(fields).build()?;
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
@@ -190,11 +187,8 @@ mod tests {
         let trace = |name: &str, held_out: bool, start: f64| {
             let rows = 3;
             let signal = |scale: f64| -> Vec<Vec<f64>> {
-                let of = |joint: usize| {
-                    (0..rows)
-                        .map(|row| scale * (1.0 + joint as f64) / (3.0 + f64::from(row)))
-                        .collect()
-                };
+                let of =
+                    |joint: usize| (0..rows).map(|row| scale * (1.0 + joint as f64) / (3.0 + f64::from(row))).collect();
                 (0..arm.dof()).map(of).collect()
             };
             Trace {
@@ -226,10 +220,8 @@ mod tests {
         assert_eq!(header.len(), 3 + 5 * 6);
         assert_eq!(&header[..4], ["recording", "held_out", "t", "measured_joint1"]);
         assert_eq!(header[32], "moving_joint6");
-        let rows: Vec<Vec<String>> = text
-            .records()
-            .map(|row| row.expect("a row").iter().map(str::to_owned).collect())
-            .collect();
+        let rows: Vec<Vec<String>> =
+            text.records().map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect();
         assert_eq!(rows.len(), 6);
         assert_eq!(&rows[3][..2], ["c.csv", "true"]);
         let cell = |row: usize, name: &str| -> f64 {
@@ -261,10 +253,7 @@ mod tests {
     #[test]
     fn another_ending_is_refused_with_the_remedy() {
         let error = Kind::of(Path::new("r.xlsx")).expect_err("unknown").to_string();
-        assert!(
-            error.contains("r.xlsx") && error.contains(".csv or .parquet"),
-            "{error}"
-        );
+        assert!(error.contains("r.xlsx") && error.contains(".csv or .parquet"), "{error}");
         assert_eq!(Kind::of(Path::new("a.b.CSV")).expect("known"), Kind::Csv);
     }
 }

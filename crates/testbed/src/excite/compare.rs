@@ -49,12 +49,7 @@ pub fn qualities(
     proposed: &Excitation,
 ) -> anyhow::Result<Vec<(String, Quality)>> {
     let of = |(name, recording): &(String, RegularRecording)| {
-        let input = Input {
-            name,
-            recording,
-            held_out: false,
-            before: false,
-        };
+        let input = Input { name, recording, held_out: false, before: false };
         let quality = diagnosis::quality_of(arm, limits, proposed, &[input])?;
         Ok((name.clone(), quality))
     };

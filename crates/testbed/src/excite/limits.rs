@@ -19,15 +19,9 @@ pub fn of(args: &ExciteArgs, arm: &Arm) -> anyhow::Result<Vec<MotionLimits>> {
     replace("velocity", &args.velocity_limit, arm, &mut limits, |limits, value| {
         limits.velocity = value;
     })?;
-    replace(
-        "acceleration",
-        &args.acceleration_limit,
-        arm,
-        &mut limits,
-        |limits, value| {
-            limits.acceleration = value;
-        },
-    )?;
+    replace("acceleration", &args.acceleration_limit, arm, &mut limits, |limits, value| {
+        limits.acceleration = value;
+    })?;
     replace("effort", &args.effort_limit, arm, &mut limits, |limits, value| {
         limits.effort = value;
     })?;

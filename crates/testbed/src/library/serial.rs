@@ -16,11 +16,8 @@ pub fn serial_urdf(urdf: &str, arm: &Arm) -> anyhow::Result<String> {
     if arm.fixed_joints().is_empty() {
         return Ok(urdf.to_owned());
     }
-    let fixed: HashMap<&str, &FixedJoint> = arm
-        .fixed_joints()
-        .iter()
-        .map(|joint| (joint.name.as_str(), joint))
-        .collect();
+    let fixed: HashMap<&str, &FixedJoint> =
+        arm.fixed_joints().iter().map(|joint| (joint.name.as_str(), joint)).collect();
     let mut reader = Reader::from_str(urdf);
     let mut writer = Writer::new(Vec::new());
     let mut depth = 0;
@@ -62,9 +59,7 @@ fn joint_of<'a>(tag: &BytesStart<'_>, fixed: &HashMap<&str, &'a FixedJoint>) -> 
         return Ok(None);
     }
     let name = tag.try_get_attribute("name")?;
-    let name = name
-        .map(|name| name.unescape_value().map(std::borrow::Cow::into_owned))
-        .transpose()?;
+    let name = name.map(|name| name.unescape_value().map(std::borrow::Cow::into_owned)).transpose()?;
     Ok(name.and_then(|name| fixed.get(name.as_str()).copied()))
 }
 
@@ -124,13 +119,7 @@ mod tests {
         assert!(serial.fixed_joints().is_empty());
         let torque = |arm: &Arm| {
             let mut tau = [0.0; 2];
-            arm.inverse_dynamics(
-                &mut Workspace::new(arm),
-                &[0.3, 0.4],
-                &[1.0, -2.0],
-                &[3.0, 4.0],
-                &mut tau,
-            );
+            arm.inverse_dynamics(&mut Workspace::new(arm), &[0.3, 0.4], &[1.0, -2.0], &[3.0, 4.0], &mut tau);
             tau
         };
         let (a, b) = (torque(&arm), torque(&serial));

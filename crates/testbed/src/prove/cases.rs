@@ -58,10 +58,7 @@ impl Cases {
                         folder.display()
                     );
                 }
-                Self::Given {
-                    cases: cases.clone(),
-                    truth,
-                }
+                Self::Given { cases: cases.clone(), truth }
             }
             (None, _) => Self::Drawn {
                 seed: args.seed,
@@ -84,24 +81,13 @@ impl Cases {
     /// The origin in words, without paths, because it is a part of the seal.
     pub fn describe(&self) -> String {
         match self {
-            Self::Drawn {
-                seed,
-                robots,
-                plans,
-                lifelike,
-                urdf_error,
-                ..
-            } => {
+            Self::Drawn { seed, robots, plans, lifelike, urdf_error, .. } => {
                 let names: Vec<&str> = robots.iter().map(Robot::name).collect();
                 let urdfs = urdf_error.map_or_else(
                     || "URDFs wrong by 0, 3, 10 and 30 %".to_owned(),
                     |sigma| format!("URDFs wrong by {} %", 100.0 * sigma),
                 );
-                let real = if *lifelike {
-                    "half of them lifelike"
-                } else {
-                    "none lifelike"
-                };
+                let real = if *lifelike { "half of them lifelike" } else { "none lifelike" };
                 let (count, names) = (plans.len(), names.join(", "));
                 let cases = if count == 1 { "case" } else { "cases" };
                 format!("{count} {cases} drawn from seed {seed} on {names}, {real}, {urdfs}")
@@ -122,22 +108,11 @@ impl Cases {
     /// The command that makes the proof again, without the cases' paths.
     pub fn command(&self) -> String {
         match self {
-            Self::Drawn {
-                seed,
-                plans,
-                named,
-                chain,
-                lifelike,
-                urdf_error,
-                ..
-            } => {
+            Self::Drawn { seed, plans, named, chain, lifelike, urdf_error, .. } => {
                 let robots: String = named.iter().map(|robot| format!(" --robot {robot}")).collect();
                 let plain = if *lifelike { "" } else { " --lifelike false" };
                 let error = urdf_error.map_or_else(String::new, |sigma| format!(" --urdf-error {sigma}"));
-                format!(
-                    "testbed prove --cases {} --seed {seed}{robots}{chain}{plain}{error} --out proof/",
-                    plans.len()
-                )
+                format!("testbed prove --cases {} --seed {seed}{robots}{chain}{plain}{error} --out proof/", plans.len())
             }
             Self::Given { .. } => "testbed prove --cases-from CASES --truth TRUTHS --out proof/".to_owned(),
         }

@@ -68,10 +68,7 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, task: Task<'_>) ->
     let mut errors = tempfile::tempfile()?;
     let mut command = Command::new(program);
     command.current_dir(room.path()).env_clear();
-    command
-        .args(["diagnose", "--robot", &files.robot, "--train"])
-        .args(&files.train)
-        .args(task.more.map(|_| MORE));
+    command.args(["diagnose", "--robot", &files.robot, "--train"]).args(&files.train).args(task.more.map(|_| MORE));
     command.arg("--held-out").args(&files.held_out);
     command.args(["--json", "out.json", "--jobs", "1"]);
     match task.only {
@@ -82,10 +79,7 @@ pub fn diagnose(program: &Path, folder: &Path, files: &Files, task: Task<'_>) ->
     if task.next {
         command.args(["--next", NEXT]);
     }
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(errors.try_clone()?);
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(errors.try_clone()?);
     let mut child = command.spawn().with_context(|| program.display().to_string())?;
     let status = loop {
         if let Some(status) = child.try_wait()? {

@@ -33,11 +33,8 @@ use crate::written::Written;
 pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.markdown {
         output::check_writable(path)?;
-        let mark = if args.published.is_some() {
-            "Made by `testbed prove --published`"
-        } else {
-            "Made by `testbed prove`;"
-        };
+        let mark =
+            if args.published.is_some() { "Made by `testbed prove --published`" } else { "Made by `testbed prove`;" };
         OutputFile::markdown(path).marked(mark).check()?;
     }
     ensure!(
@@ -100,17 +97,12 @@ fn protocol(
             rows::truth::<Truth>(name, &text).with_context(|| format!("{}: correct or remove it", truth.display()))?;
         }
     }
-    times.of("conceal", || {
-        work::all("concealing", places, jobs, |place| source.make(place))
-    })?;
+    times.of("conceal", || work::all("concealing", places, jobs, |place| source.make(place)))?;
     let seal = times.of("seal", || vault.seal(places, source.describe()))?;
     let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
     times.of("diagnose", || {
         work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
-            let task = Task {
-                next: true,
-                ..Task::default()
-            };
+            let task = Task { next: true, ..Task::default() };
             vault.diagnose(place, sealed, &format!("diagnoses/{}", place.name), task)
         })
     })?;
@@ -126,10 +118,7 @@ fn protocol(
             let name = |control: &str| format!("controls/{}.{control}", place.name);
             let fit = |control: &str, terms: &[scoring::Name]| {
                 let only = list(terms);
-                let task = Task {
-                    only: Some(&only),
-                    ..Task::default()
-                };
+                let task = Task { only: Some(&only), ..Task::default() };
                 vault.diagnose(place, sealed, &name(control), task)
             };
             fit("true", &true_terms(&truth))?;
@@ -145,18 +134,12 @@ fn protocol(
     let mut truths = truths.into_inner().unwrap_or_default();
     times.of("experiments", || {
         let examined = experiments::examined(source, vault, &pairs)?;
-        work::all(
-            "recording the proposed experiments",
-            &examined,
-            jobs,
-            |(place, sealed)| experiments::make(source, vault, place, sealed, &truths[&place.name]),
-        )
+        work::all("recording the proposed experiments", &examined, jobs, |(place, sealed)| {
+            experiments::make(source, vault, place, sealed, &truths[&place.name])
+        })
     })?;
     let to_track = source.tracked()?;
-    let tracked: Vec<_> = pairs
-        .iter()
-        .filter(|(place, _)| to_track.contains(&place.number))
-        .collect();
+    let tracked: Vec<_> = pairs.iter().filter(|(place, _)| to_track.contains(&place.number)).collect();
     times.of("track", || {
         work::all("tracking task D", &tracked, jobs, |(place, sealed)| {
             tracking_step::track(source, vault, place, sealed, &truths[&place.name])
@@ -168,10 +151,7 @@ fn protocol(
             let truth = truths.remove(&place.name).unwrap_or_default();
             let is_tracked = to_track.contains(&place.number);
             let tracking = is_tracked.then(|| tracking_step::text(vault, place)).transpose()?;
-            Ok(Row {
-                tracking,
-                ..row(vault, place, sealed, truth)?
-            })
+            Ok(Row { tracking, ..row(vault, place, sealed, truth)? })
         })
         .collect();
     Ok((seal, rows?))
@@ -223,19 +203,10 @@ fn summary(proof: &Proof) -> String {
             None if target.counted.is_some_and(|counted| counted.of > 0) && target.at_least.is_some() => "too few",
             None => "–",
         };
-        table.add_row([
-            target.what.clone(),
-            figure(target),
-            wanted(target),
-            target.of.to_string(),
-            reached.to_owned(),
-        ]);
+        table.add_row([target.what.clone(), figure(target), wanted(target), target.of.to_string(), reached.to_owned()]);
     }
     let paper = proof.paper.as_ref().map_or_else(String::new, disturbance::words::line);
-    format!(
-        "{}; sealed as {}\n{table}\n{paper}",
-        proof.seal.source, proof.seal.whole
-    )
+    format!("{}; sealed as {}\n{table}\n{paper}", proof.seal.source, proof.seal.whole)
 }
 
 /// The duration of each phase. It is the only result that differs between two runs, and therefore has its own file.

@@ -147,14 +147,7 @@ fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
 fn recorded(scenario: &Scenario) -> anyhow::Result<Recording> {
     let exact = RigidBody::new(scenario.arm.clone());
     let run = simulation::run(scenario, ModelKind::True, &exact, 0, &mut [])?.recording;
-    Ok(Recording {
-        joints: run.joints,
-        time: run.time,
-        q: run.q,
-        qd: run.qd,
-        tau: run.tau,
-        ..Recording::default()
-    })
+    Ok(Recording { joints: run.joints, time: run.time, q: run.q, qd: run.qd, tau: run.tau, ..Recording::default() })
 }
 
 /// The assessment of the case's diagnosis, with the models of table I, which are trained here, for comparison.
@@ -164,22 +157,13 @@ fn recorded(scenario: &Scenario) -> anyhow::Result<Recording> {
 pub fn assess(row: &Row) -> anyhow::Result<Disturbance> {
     let (train, test) = (Scenario::built_in(TRAIN)?, Scenario::built_in(TEST)?);
     let answer = row.tried()?.answer.unwrap_or_default();
-    let named = |effect: &String, joint: &Option<String>| NamedEffect {
-        effect: effect.clone(),
-        joint: joint.clone(),
-    };
+    let named = |effect: &String, joint: &Option<String>| NamedEffect { effect: effect.clone(), joint: joint.clone() };
     let main = answer.findings.iter().find(|named| named.effect == EFFECT);
-    let aliases: Vec<NamedEffect> = main
-        .iter()
-        .flat_map(|named| &named.confusable_with)
-        .map(|other| named(&other.effect, &other.joint))
-        .collect();
+    let aliases: Vec<NamedEffect> =
+        main.iter().flat_map(|named| &named.confusable_with).map(|other| named(&other.effect, &other.joint)).collect();
     let diagnosed = diagnosed(&answer, &test)?;
     let factor = main.and_then(|named| factor(named.parameters.get("factor")?, 1.0 / train.inertia_scale));
-    let other = |row: tables::Row| Other {
-        paper_table_2: paper::row(2, row.model),
-        row,
-    };
+    let other = |row: tables::Row| Other { paper_table_2: paper::row(2, row.model), row };
     let table = tables::table_1(&train, &test, &TrainingOptions::default()).context("training the paper's models")?;
     Ok(Disturbance {
         inertia_scale: train.inertia_scale,
@@ -220,10 +204,7 @@ fn diagnosed(answer: &Answer, test: &Scenario) -> anyhow::Result<Option<Errors>>
     };
     let model = Corrected::new(&test.nominal_arm(), &effects)?;
     let mse = model.mean_squared_error(&training::own_samples(test)?);
-    Ok(Some(Errors {
-        mean: tables::mean(&mse),
-        mse,
-    }))
+    Ok(Some(Errors { mean: tables::mean(&mse), mse }))
 }
 
 /// A finding as an effect; `None` for effects whose parameters are not plain numbers in a finding.
@@ -271,10 +252,8 @@ mod tests {
     #[test]
     fn aliases_are_exactly_the_torque_scales_of_all_joints() {
         let joints = ["a".to_owned(), "b".to_owned()];
-        let alias = |effect: &str, joint: &str| NamedEffect {
-            effect: effect.to_owned(),
-            joint: Some(joint.to_owned()),
-        };
+        let alias =
+            |effect: &str, joint: &str| NamedEffect { effect: effect.to_owned(), joint: Some(joint.to_owned()) };
         assert!(are_all_scales(&[alias(ALIAS, "b"), alias(ALIAS, "a")], &joints));
         assert!(!are_all_scales(&[alias(ALIAS, "a")], &joints));
         assert!(!are_all_scales(&[alias(ALIAS, "a"), alias("payload", "b")], &joints));

@@ -101,12 +101,7 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
             recording::write_whole(&to, |file| file.write_all(&bytes))?;
         }
     }
-    let hashes = [
-        &vault.program.sha256,
-        &sealed.inputs(),
-        &sealed.truth,
-        &sha256_of(&scenario)?,
-    ];
+    let hashes = [&vault.program.sha256, &sealed.inputs(), &sealed.truth, &sha256_of(&scenario)?];
     let made_of = made_of(hashes.map(String::as_str));
     if !record(vault, place).is_some_and(|made| made.is_of(&made_of, &recording)) {
         if recording.is_file() {
@@ -137,20 +132,13 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
                 Err(error) => return Err(error.into()),
             }
         }
-        let made = Made {
-            made_of,
-            recording: failed.is_none().then(|| sha256_of(&recording)).transpose()?,
-            failed,
-        };
+        let made = Made { made_of, recording: failed.is_none().then(|| sha256_of(&recording)).transpose()?, failed };
         output::write_json(&record_path(vault, place), &made)?;
     }
     if !recording.is_file() {
         return Ok(());
     }
-    let task = Task {
-        more: Some(&recording),
-        ..Task::default()
-    };
+    let task = Task { more: Some(&recording), ..Task::default() };
     vault.diagnose(place, sealed, &second(place), task)
 }
 

@@ -35,10 +35,8 @@ impl Files {
     /// If one is missing.
     pub fn of(folder: &Path) -> anyhow::Result<Self> {
         let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
-        let mut names: Vec<String> = entries
-            .flatten()
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .collect();
+        let mut names: Vec<String> =
+            entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         let pick = |start: &str, end: &str| -> Vec<String> {
             let fits = |name: &&String| name.starts_with(start) && name.ends_with(end);

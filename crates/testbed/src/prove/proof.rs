@@ -42,10 +42,7 @@ impl Proof {
             answers: rows.iter().map(|row| (row.case.clone(), answer(row))).collect(),
             score: rows::score(rows.iter().filter(|row| !is_paper(row)))?,
             paper: rows.iter().find(is_paper).map(disturbance::assess).transpose()?,
-            tracking: rows
-                .iter()
-                .filter_map(|row| row.tracked().transpose())
-                .collect::<anyhow::Result<_>>()?,
+            tracking: rows.iter().filter_map(|row| row.tracked().transpose()).collect::<anyhow::Result<_>>()?,
         })
     }
 }

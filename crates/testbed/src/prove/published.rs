@@ -69,23 +69,14 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
     let (robots, absent) = robots::there(&file, recordings)?;
     let vault = Vault::new(&args.out)?;
     let deferred = interrupt::Deferred::start();
-    let places: Vec<Place> = robots
-        .iter()
-        .enumerate()
-        .map(|(number, robot)| robots::place(number, robot, &vault.out))
-        .collect();
+    let places: Vec<Place> =
+        robots.iter().enumerate().map(|(number, robot)| robots::place(number, robot, &vault.out)).collect();
     let tasks: Vec<(&Robot, &Place)> = robots.iter().zip(&places).collect();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.map_or(cores, usize::from);
-    work::all("copying", &tasks, jobs, |(robot, place)| {
-        robots::stage(robot, &recordings.join(&robot.name), place)
-    })?;
+    work::all("copying", &tasks, jobs, |(robot, place)| robots::stage(robot, &recordings.join(&robot.name), place))?;
     let names: Vec<&str> = robots.iter().map(|robot| robot.name.as_str()).collect();
-    let source = format!(
-        "{} as published in a file with SHA-256 {}",
-        names.join(", "),
-        file.sha256
-    );
+    let source = format!("{} as published in a file with SHA-256 {}", names.join(", "), file.sha256);
     let seal = vault.seal(&places, source)?;
     let pairs: Vec<_> = places.iter().zip(&seal.cases).collect();
     work::all("diagnosing", &pairs, jobs, |(place, sealed)| {
@@ -100,10 +91,7 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
         sealed.check_truth(&bytes)?;
         let truth: Published = serde_json::from_slice(&bytes).with_context(|| place.truth.display().to_string())?;
         let only = list(&truth.terms());
-        let task = Task {
-            only: Some(&only),
-            ..Task::default()
-        };
+        let task = Task { only: Some(&only), ..Task::default() };
         vault.diagnose(place, sealed, &control(place), task)?;
         if let Ok(mut truths) = truths.lock() {
             truths.insert(place.name.clone(), truth);
@@ -174,23 +162,12 @@ fn names(real: &Real) -> String {
 
 /// The robots as a table.
 fn summary(real: &Real) -> String {
-    let header = [
-        "robot",
-        "published, named",
-        "not testable",
-        "contradicted",
-        "held-out error",
-    ]
-    .map(str::to_owned);
+    let header = ["robot", "published, named", "not testable", "contradicted", "held-out error"].map(str::to_owned);
     let mut table = report::terminal::table(header);
     for Tried { robot, score, .. } in &real.robots {
         let count = |fates: &[PublishedFate]| score.said.iter().filter(|said| fates.contains(&said.fate)).count();
         let found = count(&[PublishedFate::Named, PublishedFate::SameTorque]);
-        let contradicted = score
-            .besides
-            .iter()
-            .filter(|name| name.contradicted_by.is_some())
-            .count();
+        let contradicted = score.besides.iter().filter(|name| name.contradicted_by.is_some()).count();
         table.add_row([
             robot.name.clone(),
             format!("{found} of {}", score.said.len()),

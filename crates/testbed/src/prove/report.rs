@@ -9,10 +9,7 @@ use super::{disturbance, experiments, tracking};
 
 /// The self-contained HTML page.
 pub fn page(proof: &Proof) -> String {
-    let eyebrow = format!(
-        "testbed proof · {} · sealed as `{}`",
-        proof.seal.source, proof.seal.whole
-    );
+    let eyebrow = format!("testbed proof · {} · sealed as `{}`", proof.seal.source, proof.seal.whole);
     let made = format!(
         "Made by testbed {} (`testbed prove`). The same seed and program give the same page, byte for byte.",
         proof.seal.program.version
@@ -22,10 +19,7 @@ pub fn page(proof: &Proof) -> String {
 
 /// The report as Markdown.
 pub fn markdown(proof: &Proof) -> String {
-    report::markdown(
-        &blocks(proof),
-        "Made by `testbed prove`; the same seed and program give the same bytes.",
-    )
+    report::markdown(&blocks(proof), "Made by `testbed prove`; the same seed and program give the same bytes.")
 }
 
 /// The whole report.
@@ -68,10 +62,7 @@ fn injected(proof: &Proof) -> Vec<Block> {
              is the public command with the same arguments for all cases, and because the same seed and program give the same bytes. A seed of your own choice \
              excludes that the diagnosis was tuned on the cases.",
         ),
-        Block::Code {
-            language: "sh",
-            code: proof.command.clone(),
-        },
+        Block::Code { language: "sh", code: proof.command.clone() },
     ]
 }
 
@@ -92,10 +83,6 @@ fn hashes(proof: &Proof) -> Vec<Block> {
             "Program: testbed {}, SHA-256 `{}`. Complete seal: `{}`, the SHA-256 of `SHA256SUMS`. Recordings and URDF: the SHA-256 of their lines in that file, without folders.",
             proof.seal.program.version, proof.seal.program.sha256, proof.seal.whole
         )),
-        table(
-            &["case", "recordings and URDF", "ground truth", "diagnosis"],
-            4,
-            rows.collect(),
-        ),
+        table(&["case", "recordings and URDF", "ground truth", "diagnosis"], 4, rows.collect()),
     ]
 }

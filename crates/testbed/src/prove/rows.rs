@@ -40,11 +40,7 @@ pub struct Row {
 impl Row {
     /// The case in the seal.
     pub fn sealed(&self) -> SealedCase {
-        SealedCase {
-            case: self.case.clone(),
-            truth: sha256(self.truth.as_bytes()),
-            files: self.files.clone(),
-        }
+        SealedCase { case: self.case.clone(), truth: sha256(self.truth.as_bytes()), files: self.files.clone() }
     }
 
     /// The case with parsed results, for scoring.

@@ -44,14 +44,7 @@ pub struct Label {
 impl Label {
     /// The label of a part.
     pub fn new(shard: Shard, program: Program, [source, command]: [String; 2], sealed: String) -> Self {
-        Self {
-            schema: SCHEMA.to_owned(),
-            shard,
-            program,
-            source,
-            command,
-            sealed,
-        }
+        Self { schema: SCHEMA.to_owned(), shard, program, source, command, sealed }
     }
 }
 
@@ -98,11 +91,7 @@ pub fn write(path: &Path, label: &Label, rows: &[Row]) -> anyhow::Result<()> {
     for (_, optional, of) in COLUMNS {
         let cells: Vec<Option<String>> = rows.iter().map(of).collect::<anyhow::Result<_>>()?;
         let levels: Vec<i16> = cells.iter().map(|cell| i16::from(cell.is_some())).collect();
-        let values: Vec<ByteArray> = cells
-            .iter()
-            .flatten()
-            .map(|cell| ByteArray::from(cell.as_str()))
-            .collect();
+        let values: Vec<ByteArray> = cells.iter().flatten().map(|cell| ByteArray::from(cell.as_str())).collect();
         let mut column = group.next_column()?.context("a column too few")?;
         let levels = optional.then_some(levels.as_slice());
         column.typed::<ByteArrayType>().write_batch(&values, levels, None)?;
@@ -124,18 +113,10 @@ pub fn read(path: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     let pairs = reader.metadata().file_metadata().key_value_metadata();
     let label = pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == KEY)?.value.clone());
     let Some(label) = label else {
-        bail!(
-            "{}: is no part of a proof; give files that --shard wrote",
-            path.display()
-        );
+        bail!("{}: is no part of a proof; give files that --shard wrote", path.display());
     };
     let label: Label = serde_json::from_str(&label).with_context(place)?;
-    ensure!(
-        label.schema == SCHEMA,
-        "{}: its schema is \"{}\"",
-        path.display(),
-        label.schema
-    );
+    ensure!(label.schema == SCHEMA, "{}: its schema is \"{}\"", path.display(), label.schema);
     let mut rows = Vec::new();
     for row in reader.get_row_iter(None).with_context(place)? {
         let row = row.with_context(place)?;
@@ -196,10 +177,8 @@ pub fn merge(folder: &Path) -> anyhow::Result<(Label, Vec<Row>)> {
     let Some((_, label)) = first else {
         bail!("{}: has no part of a proof (shard-k-of-n.parquet)", folder.display());
     };
-    let missing: Vec<String> = (1..=label.shard.of)
-        .filter(|number| !there.contains_key(number))
-        .map(|n| n.to_string())
-        .collect();
+    let missing: Vec<String> =
+        (1..=label.shard.of).filter(|number| !there.contains_key(number)).map(|n| n.to_string()).collect();
     ensure!(
         missing.is_empty(),
         "{}: parts {} of {} are missing; run them again (--shard k/n goes on where it stopped)",
@@ -232,10 +211,7 @@ mod tests {
     }
 
     fn label(number: usize, of: usize) -> Label {
-        let program = Program {
-            version: "1".into(),
-            sha256: "00".into(),
-        };
+        let program = Program { version: "1".into(), sha256: "00".into() };
         let words = ["4 cases drawn from seed 7".to_owned(), "testbed prove".to_owned()];
         Label::new(Shard { number, of }, program, words, "11".into())
     }

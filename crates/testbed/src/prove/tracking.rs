@@ -130,10 +130,7 @@ impl CaseTracking {
 
     /// The tracking error with the diagnosed effects over that with the exact model, in the loop without the lag of the velocity filter.
     pub fn over_exact_without_lag(&self) -> Option<f64> {
-        over(
-            self.error_without_lag(Model::Diagnosed),
-            self.error_without_lag(Model::Exact),
-        )
+        over(self.error_without_lag(Model::Diagnosed), self.error_without_lag(Model::Exact))
     }
 }
 
@@ -187,21 +184,13 @@ impl Case<'_> {
         ];
         let driven = believed.clone().with_rotor_inertias(self.robot.rotor_inertias());
         let run = |plan: &Plan, rate| closed_loop::run(&machine, &driven, &task, &course, plan, rate);
-        let each = |rate| {
-            plans
-                .iter()
-                .map(|plan| run(plan, rate))
-                .collect::<anyhow::Result<Vec<_>>>()
-        };
+        let each = |rate| plans.iter().map(|plan| run(plan, rate)).collect::<anyhow::Result<Vec<_>>>();
         let (runs, without_lag) = (each(Rate::AsItIs)?, each(Rate::Filtered)?);
         if let Some(path) = timeline {
             self.show(path, &task, &course, &runs)?;
         }
         let pairs = runs.iter().zip(&without_lag);
-        let tracked = Model::ALL
-            .iter()
-            .zip(pairs)
-            .map(|(&model, (run, other))| run.tracked(model, other, &course));
+        let tracked = Model::ALL.iter().zip(pairs).map(|(&model, (run, other))| run.tracked(model, other, &course));
         let baseline = |effect: &faults::Injected| effect.expressed_share.is_none();
         let injected = self.truth.injected.iter().filter(|effect| !baseline(effect));
         Ok(CaseTracking {
@@ -216,10 +205,7 @@ impl Case<'_> {
                     onset: effect.onset,
                 })
                 .collect(),
-            named: effects
-                .iter()
-                .map(|effect| (effect.name().to_owned(), effect.joint().map(str::to_owned)))
-                .collect(),
+            named: effects.iter().map(|effect| (effect.name().to_owned(), effect.joint().map(str::to_owned))).collect(),
             runs: tracked.collect(),
         })
     }
@@ -227,14 +213,7 @@ impl Case<'_> {
     #[cfg(feature = "viewer")]
     fn show(&self, path: &Path, task: &Scenario, course: &Course, runs: &[closed_loop::Run]) -> anyhow::Result<()> {
         let title = format!("{} of {}, {}", task.title, self.truth.case, self.robot.name());
-        show::write(
-            path,
-            &title,
-            self.robot.arm(),
-            &self.folder.join("robot.urdf"),
-            course,
-            runs,
-        )
+        show::write(path, &title, self.robot.arm(), &self.folder.join("robot.urdf"), course, runs)
     }
 
     #[cfg(not(feature = "viewer"))]

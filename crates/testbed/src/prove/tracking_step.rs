@@ -38,18 +38,13 @@ pub fn track(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, 
     sealed.check_files(&place.folder)?;
     let truth = rows::truth(&place.name, truth)?;
     let case = Case {
-        robot: source
-            .robot(place)
-            .with_context(|| format!("{}: was not drawn", place.name))?,
+        robot: source.robot(place).with_context(|| format!("{}: was not drawn", place.name))?,
         folder: &place.folder,
         truth: &truth,
         named: model.as_deref(),
     };
     // One thread per case, because cases already run in parallel.
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .context("starting a thread")?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().context("starting a thread")?;
     let tracking = pool.install(|| case.track(made_of.clone(), timeline.as_deref()))?;
     output::write_json(&path, &tracking)?;
     let sha256 = sha256_of(&path)?;

@@ -64,12 +64,7 @@ pub struct Vault {
 /// # Errors
 /// If the system refuses.
 pub(super) fn make_folder(folder: &Path) -> anyhow::Result<()> {
-    let remedy = || {
-        format!(
-            "{}: the folder cannot be made; give another with --out DIR",
-            folder.display()
-        )
-    };
+    let remedy = || format!("{}: the folder cannot be made; give another with --out DIR", folder.display());
     std::fs::create_dir_all(folder).with_context(remedy)
 }
 
@@ -84,16 +79,8 @@ impl Vault {
             make_folder(&folder)?;
         }
         let executable = std::env::current_exe().context("finding this program")?;
-        let program = Program {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            sha256: sha256_of(&executable)?,
-        };
-        Ok(Self {
-            _alone: Alone::in_folder(out)?,
-            out: out.to_owned(),
-            executable,
-            program,
-        })
+        let program = Program { version: env!("CARGO_PKG_VERSION").to_owned(), sha256: sha256_of(&executable)? };
+        Ok(Self { _alone: Alone::in_folder(out)?, out: out.to_owned(), executable, program })
     }
 
     /// Records the campaign of the folder, or checks that it is this one.
@@ -122,11 +109,7 @@ impl Vault {
             there == begun,
             "{}: was begun for {there_is}, and this is {}; give another --out",
             self.out.display(),
-            if there_is == this_is {
-                "the same with another URDF".to_owned()
-            } else {
-                this_is
-            }
+            if there_is == this_is { "the same with another URDF".to_owned() } else { this_is }
         );
         Ok(())
     }
@@ -141,11 +124,7 @@ impl Vault {
             .map(|place| {
                 let hash = |name: &String| Ok((name.clone(), sha256_of(&place.folder.join(name))?));
                 let files: anyhow::Result<_> = Files::of(&place.folder)?.all().map(hash).collect();
-                Ok(SealedCase {
-                    case: place.name.clone(),
-                    truth: sha256_of(&place.truth)?,
-                    files: files?,
-                })
+                Ok(SealedCase { case: place.name.clone(), truth: sha256_of(&place.truth)?, files: files? })
             })
             .collect();
         let seal = Seal::new(self.program.clone(), source, sealed?);
@@ -189,8 +168,7 @@ impl Vault {
             record.program == self.program.sha256 && record.inputs == inputs && record.only.as_deref() == task.only
         };
         let is_there = |hash: &Option<String>, path: &Path| {
-            hash.as_ref()
-                .is_none_or(|hash| sha256_of(path).is_ok_and(|is| is == *hash))
+            hash.as_ref().is_none_or(|hash| sha256_of(path).is_ok_and(|is| is == *hash))
         };
         let model = self.model_path(name);
         if let Some(record) = read_record(&record).filter(is_same)
@@ -273,21 +251,14 @@ impl Vault {
     }
 
     fn paths(&self, name: &str) -> (PathBuf, PathBuf) {
-        (
-            self.out.join(format!("{name}.json")),
-            self.out.join(format!("{name}.done.json")),
-        )
+        (self.out.join(format!("{name}.json")), self.out.join(format!("{name}.done.json")))
     }
 }
 
 /// The text of a file, which must have the recorded `hash`.
 fn unchanged(path: &Path, hash: &str) -> anyhow::Result<String> {
     let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    ensure!(
-        sha256(text.as_bytes()) == hash,
-        "{}: was changed after it was written",
-        path.display()
-    );
+    ensure!(sha256(text.as_bytes()) == hash, "{}: was changed after it was written", path.display());
     Ok(text)
 }
 

@@ -59,9 +59,8 @@ pub fn energies(gp: &LagrangianGp) -> Energies<'_> {
 /// A sentence on approximated regressions: the number of inducing points, and the largest error.
 pub fn approximated(regressions: &[Gp]) -> String {
     let conditionings = regressions.iter().map(Gp::conditioning);
-    let gaps: Vec<(f64, &torque::Conditioning)> = conditionings
-        .filter_map(|conditioning| Some((conditioning.likelihood_gap?, conditioning)))
-        .collect();
+    let gaps: Vec<(f64, &torque::Conditioning)> =
+        conditionings.filter_map(|conditioning| Some((conditioning.likelihood_gap?, conditioning))).collect();
     let Some((gap, worst)) = gaps.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
         return String::new();
     };

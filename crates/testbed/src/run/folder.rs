@@ -22,12 +22,7 @@ impl RunFolder {
     /// If it cannot.
     pub fn check(out: Option<&Path>) -> anyhow::Result<()> {
         let folder = out.unwrap_or(Path::new("runs"));
-        let remedy = || {
-            format!(
-                "{}: the run's folder cannot be made; give another with --out DIR",
-                folder.display()
-            )
-        };
+        let remedy = || format!("{}: the run's folder cannot be made; give another with --out DIR", folder.display());
         let mut existing = folder;
         while !existing.exists() {
             existing = match existing.parent() {
@@ -54,20 +49,12 @@ impl RunFolder {
     /// # Errors
     /// If the system refuses.
     pub fn create(out: Option<&Path>, name: &str) -> anyhow::Result<Self> {
-        let remedy = |path: &Path| {
-            format!(
-                "{}: the run's folder cannot be made; give another with --out DIR",
-                path.display()
-            )
-        };
+        let remedy =
+            |path: &Path| format!("{}: the run's folder cannot be made; give another with --out DIR", path.display());
         if let Some(out) = out {
             let created = !out.exists();
             std::fs::create_dir_all(out).with_context(|| remedy(out))?;
-            return Ok(Self {
-                _alone: Some(Alone::in_folder(out)?),
-                path: out.to_owned(),
-                created,
-            });
+            return Ok(Self { _alone: Some(Alone::in_folder(out)?), path: out.to_owned(), created });
         }
         let runs = Path::new("runs");
         std::fs::create_dir_all(runs).with_context(|| remedy(runs))?;
@@ -75,11 +62,7 @@ impl RunFolder {
             let path = runs.join(format!("{number:03}-{name}"));
             match std::fs::create_dir(&path) {
                 Ok(()) => {
-                    return Ok(Self {
-                        path,
-                        created: true,
-                        _alone: None,
-                    });
+                    return Ok(Self { path, created: true, _alone: None });
                 }
                 // Another run has taken this number.
                 Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}

@@ -26,9 +26,7 @@ pub(super) fn remarks(
     let joints = scenario.arm.joints().iter().map(|joint| joint.name.as_str());
     let errors = joints.zip(errors.iter().zip(&rigid));
     let errors = errors.filter(|(_, (_, rigid))| **rigid > 0.0);
-    let remaining: Vec<(&str, f64)> = errors
-        .map(|(name, (error, rigid))| (name, (error / rigid).sqrt()))
-        .collect();
+    let remaining: Vec<(&str, f64)> = errors.map(|(name, (error, rigid))| (name, (error / rigid).sqrt())).collect();
     Ok(sentences(&remaining, length_scales))
 }
 

@@ -19,11 +19,7 @@ pub struct Simulating {
 impl Simulating {
     /// The progress of a run of `duration` (s).
     pub fn new(duration: f64) -> Self {
-        Self {
-            progress: Progress::new("simulating"),
-            duration,
-            tenths: 0,
-        }
+        Self { progress: Progress::new("simulating"), duration, tenths: 0 }
     }
 
     /// Ends it.

@@ -113,10 +113,7 @@ pub struct RawSensors {
 const EXAMPLES: [(&str, &str); 6] = [
     ("robot", ": robot = \"puma560\", or the path of a URDF"),
     ("duration", ": duration = 10.0 (s)"),
-    (
-        "reference",
-        ": [reference], with amplitude, frequency_1 and frequency_2",
-    ),
+    ("reference", ": [reference], with amplitude, frequency_1 and frequency_2"),
     ("amplitude", ": amplitude = 0.5 (rad or m)"),
     ("frequency", ": frequency = 0.2 (Hz)"),
     ("scenarios", ": scenarios = [\"taskA\"]"),
@@ -130,10 +127,7 @@ pub fn parse(source: &Source) -> anyhow::Result<RawScenario> {
     toml::from_str(&source.text).map_err(|error| {
         if let Some(key) = error.message().strip_prefix("missing field `") {
             let key = key.trim_end_matches('`');
-            let example = EXAMPLES
-                .iter()
-                .find(|(known, _)| *known == key)
-                .map_or("", |(_, example)| example);
+            let example = EXAMPLES.iter().find(|(known, _)| *known == key).map_or("", |(_, example)| example);
             let place = source.place(error.span().unwrap_or(Range { start: 0, end: 0 }));
             return anyhow!("{place}: the key `{key}` is missing; add it{example}");
         }

@@ -41,11 +41,7 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
     };
     let robot =
         robot::find_robot(raw.robot.get_ref(), source.path.parent().unwrap_or(Path::new(""))).with_context(of_robot)?;
-    let written = ChainArgs {
-        base: raw.chain.base,
-        tip: raw.chain.tip,
-        lock: raw.chain.lock.into_iter().collect(),
-    };
+    let written = ChainArgs { base: raw.chain.base, tip: raw.chain.tip, lock: raw.chain.lock.into_iter().collect() };
     let chain = if flags.is_given() { flags } else { &written };
     let arm = robot.arm(&chain.options(&[])).with_context(of_robot)?;
     let urdf = robot.path;
@@ -57,15 +53,10 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
     })?;
     let control_rate = check.rate("controller.rate", raw.controller.rate.as_ref(), CONTROL_RATE)?;
     let reference_table = raw.reference.get_ref();
-    let sample_rate = check.rate(
-        "reference.sample_rate",
-        reference_table.sample_rate.as_ref(),
-        SAMPLE_RATE,
-    )?;
-    for (what, rate, most) in [
-        ("controller.rate", control_rate, MAX_STEPS),
-        ("reference.sample_rate", sample_rate, MAX_SAMPLES),
-    ] {
+    let sample_rate = check.rate("reference.sample_rate", reference_table.sample_rate.as_ref(), SAMPLE_RATE)?;
+    for (what, rate, most) in
+        [("controller.rate", control_rate, MAX_STEPS), ("reference.sample_rate", sample_rate, MAX_SAMPLES)]
+    {
         let count = (duration * rate).round();
         check.ensure((1.0..=most).contains(&count), &raw.duration, || {
             format!("duration of {duration:?} s at a {what} of {rate} Hz makes {count} steps; 1 to {most} are possible")
@@ -165,9 +156,7 @@ impl Check<'_> {
     fn number(&self, key: &str, written: Option<&Spanned<f64>>, default: f64) -> anyhow::Result<f64> {
         let Some(written) = written else { return Ok(default) };
         let value = *written.get_ref();
-        self.ensure(value.is_finite(), written, || {
-            format!("{key} is {value:?}; give a finite number")
-        })?;
+        self.ensure(value.is_finite(), written, || format!("{key} is {value:?}; give a finite number"))?;
         Ok(value)
     }
 
@@ -222,10 +211,7 @@ impl Check<'_> {
                 names.join(", ")
             )
         })?;
-        if let Some(joint) = values
-            .iter()
-            .position(|value| value.is_nan() || value.abs() > MAX_VALUE)
-        {
+        if let Some(joint) = values.iter().position(|value| value.is_nan() || value.abs() > MAX_VALUE) {
             let name = &self.arm.joints()[joint].name;
             bail!(
                 "{}: {key} of \"{name}\" is {:?}; give a number within ±{MAX_VALUE:e}",
@@ -275,10 +261,9 @@ impl Check<'_> {
             [Some(amplitude), Some(frequency_1), Some(frequency_2)] => {
                 let amplitude = self.joints("reference.amplitude", Some(amplitude), 0.0)?;
                 let third = amplitude.iter().map(|a| a / 3.0).collect();
-                for (key, frequency, amplitude) in [
-                    ("frequency_1", frequency_1, amplitude),
-                    ("frequency_2", frequency_2, third),
-                ] {
+                for (key, frequency, amplitude) in
+                    [("frequency_1", frequency_1, amplitude), ("frequency_2", frequency_2, third)]
+                {
                     sines.push(Sine {
                         amplitude,
                         frequency: self.frequencies(&format!("reference.{key}"), frequency, rate)?,
@@ -309,10 +294,7 @@ impl Check<'_> {
         let seconds = self.number("reference.fade", raw.fade.as_ref(), 0.0)?;
         if let Some(written) = &raw.fade {
             self.ensure((0.0..=0.5 * duration).contains(&seconds), written, || {
-                format!(
-                    "reference.fade is {seconds:?} s; give 0 to {}, half of the duration",
-                    0.5 * duration
-                )
+                format!("reference.fade is {seconds:?} s; give 0 to {}, half of the duration", 0.5 * duration)
             })?;
         }
         let end = duration;

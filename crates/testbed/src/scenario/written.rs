@@ -15,11 +15,7 @@ use study::robot;
 /// # Errors
 /// If the URDF or the scenario's folder does not exist.
 pub fn robot_from(path: &Path, robot: &str, urdf: &Path) -> anyhow::Result<String> {
-    if robot::is_built_in(robot) {
-        Ok(robot.to_owned())
-    } else {
-        beside(path, urdf)
-    }
+    if robot::is_built_in(robot) { Ok(robot.to_owned()) } else { beside(path, urdf) }
 }
 
 /// The path of `urdf` for a file at `path`: its name if both are in the same folder, otherwise its absolute path.
@@ -50,10 +46,8 @@ pub fn scenario(title: &str, robot: &str, arm: &Arm, duration: f64, motion: &Ref
     }
     for sine in &motion.sines {
         let [amplitude, frequency, phase] = [&sine.amplitude, &sine.frequency, &sine.phase].map(|values| list(values));
-        let _ = writeln!(
-            text,
-            "\n[[reference.sines]]\namplitude = {amplitude}\nfrequency = {frequency}\nphase = {phase}"
-        );
+        let _ =
+            writeln!(text, "\n[[reference.sines]]\namplitude = {amplitude}\nfrequency = {frequency}\nphase = {phase}");
     }
     text
 }

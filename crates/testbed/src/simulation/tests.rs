@@ -24,10 +24,7 @@ fn the_fade_tracks_better_beyond_the_training_tasks() {
         let outcome = run(&scenario, kind, model, 0, &mut []).expect("it runs");
         assert_eq!(outcome.weights.len(), if fade && kind.learns() { 6 } else { 0 });
         for weight in &outcome.weights {
-            assert!(
-                0.0 <= weight.least && weight.least <= weight.mean && weight.mean <= 1.0,
-                "{weight:?}"
-            );
+            assert!(0.0 <= weight.least && weight.least <= weight.mean && weight.mean <= 1.0, "{weight:?}");
         }
         all_joints(&outcome)
     };
@@ -43,10 +40,7 @@ fn the_fade_tracks_better_beyond_the_training_tasks() {
         let without = track(kind, model.as_ref(), false);
         println!("{kind:?}: {with:.2} mrad with the fade, {without:.2} without, {rigid:.2} rigid body alone");
         assert!(with < 0.8 * without, "{kind:?}: {with} with, {without} without");
-        assert!(
-            with < against_rigid * rigid,
-            "{kind:?}: {with} with, {rigid} rigid body alone"
-        );
+        assert!(with < against_rigid * rigid, "{kind:?}: {with} with, {rigid} rigid body alone");
     }
 }
 

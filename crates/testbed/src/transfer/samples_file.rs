@@ -23,9 +23,7 @@ pub fn write(folder: &Path, scenario: &Scenario, tasks: &[String], samples: &[Sa
     let mut rigid = Prediction::new(dof);
     for (task, samples) in tasks.iter().zip(samples) {
         let names = ["q", "qd", "qdd", "tau", "rigid"];
-        let header = names
-            .iter()
-            .flat_map(|name| (1..=dof).map(move |joint| format!("{name}_{joint}")));
+        let header = names.iter().flat_map(|name| (1..=dof).map(move |joint| format!("{name}_{joint}")));
         let mut text = header.collect::<Vec<_>>().join(",");
         text.push('\n');
         for sample in samples.iter() {

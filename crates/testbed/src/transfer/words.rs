@@ -15,9 +15,7 @@ pub fn text(transfer: &Transfer) -> String {
     );
     let header = ["train", "test"].map(str::to_owned).into_iter();
     let header =
-        header
-            .chain(joints.clone())
-            .chain(["mean".to_owned(), "predicted".to_owned(), "likelihood".to_owned()]);
+        header.chain(joints.clone()).chain(["mean".to_owned(), "predicted".to_owned(), "likelihood".to_owned()]);
     let mut table = report::terminal::table(header);
     for row in &transfer.rows {
         let mut cells = vec![names(&row.train), short(&row.test)];
@@ -32,17 +30,11 @@ pub fn text(transfer: &Transfer) -> String {
     text += "predicted: the same ratio as predicted by the model from its variance, without torques of the task. likelihood: log \
              likelihood of the torques of the task, nats per sample, mean over the joints.\n\n";
     text += "Rank correlation with the measured error (1: the same order)\n";
-    let mut table = report::terminal::table(
-        ["of"]
-            .map(str::to_owned)
-            .into_iter()
-            .chain(joints)
-            .chain(["mean".to_owned()]),
-    );
-    for (name, values) in [
-        ("predicted error", &transfer.correlation.predicted),
-        ("likelihood", &transfer.correlation.likelihood),
-    ] {
+    let mut table =
+        report::terminal::table(["of"].map(str::to_owned).into_iter().chain(joints).chain(["mean".to_owned()]));
+    for (name, values) in
+        [("predicted error", &transfer.correlation.predicted), ("likelihood", &transfer.correlation.likelihood)]
+    {
         let mut cells = vec![name.to_owned()];
         cells.extend(values.iter().map(|value| rounded(*value, 2)));
         cells.push(rounded(mean(values), 2));
@@ -54,11 +46,7 @@ pub fn text(transfer: &Transfer) -> String {
 
 /// The errors of `row` in units of the rigid body's.
 fn parts(row: &Row, errors: &[f64]) -> Vec<f64> {
-    errors
-        .iter()
-        .zip(&row.rigid)
-        .map(|(error, rigid)| error / rigid)
-        .collect()
+    errors.iter().zip(&row.rigid).map(|(error, rigid)| error / rigid).collect()
 }
 
 fn names(tasks: &[String]) -> String {

@@ -32,10 +32,7 @@ pub struct Columns<T> {
 
 impl<T> Columns<T> {
     fn new(width: usize) -> Self {
-        Self {
-            times: Vec::new(),
-            columns: (0..width).map(|_| Vec::new()).collect(),
-        }
+        Self { times: Vec::new(), columns: (0..width).map(|_| Vec::new()).collect() }
     }
 
     /// How many rows there are.

@@ -23,26 +23,10 @@ struct Quantity {
 }
 
 const QUANTITIES: [Quantity; 4] = [
-    Quantity {
-        title: "Tracking error",
-        units: ["mrad", "mm"],
-        entity: "error",
-    },
-    Quantity {
-        title: "Torque",
-        units: ["N m", "N"],
-        entity: "torque",
-    },
-    Quantity {
-        title: "Position",
-        units: ["rad", "m"],
-        entity: "position",
-    },
-    Quantity {
-        title: "Variance",
-        units: ["N² m²", "N²"],
-        entity: "variance",
-    },
+    Quantity { title: "Tracking error", units: ["mrad", "mm"], entity: "error" },
+    Quantity { title: "Torque", units: ["N m", "N"], entity: "torque" },
+    Quantity { title: "Position", units: ["rad", "m"], entity: "position" },
+    Quantity { title: "Variance", units: ["N² m²", "N²"], entity: "variance" },
 ];
 
 /// Every line: its entity under the joint's, its name in the legend, its colour and its width (points).
@@ -94,18 +78,14 @@ pub fn send(
 fn write(layout: &mut Layout<'_>, arm: &Arm, has_variance: bool) -> RecordingStreamResult<Node> {
     let scene = layout.scene(arm, &format!("{}: actual (solid), reference (amber)", arm.name()), 1.0)?;
     let key = layout.view("TextDocument", "Legend", KEY_ENTITY, &[])?;
-    let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| {
-        c.with_row_shares([0.84, 0.16])
-    })?;
+    let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| c.with_row_shares([0.84, 0.16]))?;
     let mut tabs = Vec::new();
     for quantity in QUANTITIES.iter().filter(|q| has_variance || q.entity != "variance") {
         tabs.push(grid(layout, arm, quantity)?);
     }
     let first = tabs.first().map_or("", |tab| tab.path.as_str());
     let tabs = layout.container(ContainerKind::Tabs, &tabs, |c| c.with_active_tab(first))?;
-    layout.container(ContainerKind::Horizontal, &[left, tabs], |c| {
-        c.with_col_shares([0.42, 0.58])
-    })
+    layout.container(ContainerKind::Horizontal, &[left, tabs], |c| c.with_col_shares([0.42, 0.58]))
 }
 
 /// The tab of a quantity: one plot per joint.
@@ -119,7 +99,5 @@ fn grid(layout: &mut Layout<'_>, arm: &Arm, quantity: &Quantity) -> RecordingStr
         let title = format!("{} ({unit})", joint.name);
         plots.push(layout.view("TimeSeries", &title, &origin.to_string(), &[("PlotLegend", &legend)])?);
     }
-    layout.container(ContainerKind::Grid, &plots, |c| {
-        c.with_grid_columns(2).with_display_name(quantity.title)
-    })
+    layout.container(ContainerKind::Grid, &plots, |c| c.with_grid_columns(2).with_display_name(quantity.title))
 }

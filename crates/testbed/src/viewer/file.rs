@@ -28,9 +28,7 @@ struct State {
 impl RrdFile {
     /// Creates `.<name>.partial` beside `path`, and the folder if it does not exist.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
-        let name = path
-            .file_name()
-            .with_context(|| format!("{} names no file", path.display()))?;
+        let name = path.file_name().with_context(|| format!("{} names no file", path.display()))?;
         let partial = path.with_file_name(format!(".{}.partial", name.to_string_lossy()));
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).with_context(|| format!("creating {}", folder.display()))?;
@@ -42,10 +40,7 @@ impl RrdFile {
         Ok(Self {
             path: path.to_owned(),
             partial,
-            state: Arc::new(Mutex::new(State {
-                encoder: Some(encoder),
-                error: None,
-            })),
+            state: Arc::new(Mutex::new(State { encoder: Some(encoder), error: None })),
         })
     }
 

@@ -33,10 +33,7 @@ pub fn send(
         .memory()?;
     blueprint.set_log_time_enabled(false);
     blueprint.set_time_sequence("blueprint", 0);
-    let mut layout = Layout {
-        blueprint: &blueprint,
-        used: 0,
-    };
+    let mut layout = Layout { blueprint: &blueprint, used: 0 };
     let root = write(&mut layout)?;
     layout.finish(&root, play_state)?;
     let messages = storage.take();
@@ -101,11 +98,8 @@ impl Layout<'_> {
             .with_spacing(grid_spacing(reach))
             .with_color(rerun::Color::from_rgb(52, 57, 64));
         let background = Background::new(BackgroundKind::SolidColor).with_color(rerun::Color::from_rgb(21, 24, 28));
-        let properties: [(&str, &dyn AsComponents); 3] = [
-            ("EyeControls3D", &camera),
-            ("LineGrid3D", &grid),
-            ("Background", &background),
-        ];
+        let properties: [(&str, &dyn AsComponents); 3] =
+            [("EyeControls3D", &camera), ("LineGrid3D", &grid), ("Background", &background)];
         self.view("3D", title, "world", &properties)
     }
 
@@ -123,9 +117,7 @@ impl Layout<'_> {
         for (name, property) in properties {
             self.blueprint.log(format!("{}/{name}", node.path), *property)?;
         }
-        let view = ViewBlueprint::new(class)
-            .with_display_name(title)
-            .with_space_origin(origin);
+        let view = ViewBlueprint::new(class).with_display_name(title).with_space_origin(origin);
         self.blueprint.log(node.path.as_str(), &view)?;
         Ok(node)
     }

@@ -58,10 +58,7 @@ mod tests {
 
         assert_eq!(resolve("package://my_arm/meshes/base.STL", &urdf), Some(mesh.clone()));
         assert_eq!(resolve("package://another/meshes/base.STL", &urdf), None);
-        assert_eq!(
-            resolve("../meshes/base.STL", &urdf),
-            Some(package.join("urdf/../meshes/base.STL"))
-        );
+        assert_eq!(resolve("../meshes/base.STL", &urdf), Some(package.join("urdf/../meshes/base.STL")));
         assert_eq!(resolve(&format!("file://{}", mesh.display()), &urdf), Some(mesh));
         assert_eq!(resolve("package://my_arm/meshes/base.step", &urdf), None);
     }

@@ -134,11 +134,7 @@ fn is_due(time: f64, next: &mut f64, period: f64) -> bool {
     if time + slack < *next {
         return false;
     }
-    *next = if time - *next < period {
-        *next + period
-    } else {
-        time + period
-    };
+    *next = if time - *next < period { *next + period } else { time + period };
     true
 }
 
@@ -203,10 +199,7 @@ mod tests {
             let mut next = f64::NEG_INFINITY;
             let rows = (0..steps).filter(|&k| is_due(f64::from(k) * period, &mut next, SCALAR_PERIOD));
             let rows = rows.count();
-            assert!(
-                (990..=1010).contains(&rows),
-                "{rows} rows in 10 s at a period of {period} s"
-            );
+            assert!((990..=1010).contains(&rows), "{rows} rows in 10 s at a period of {period} s");
         }
     }
 }

@@ -24,13 +24,7 @@ const VISUAL_SHELL: f64 = 1.02;
 pub fn log_scene(recording: &RecordingStream, arm: &Arm, urdf_path: &Path, arms: &[&str]) -> anyhow::Result<()> {
     recording.log_static("world", &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
     for &name in arms {
-        let artist = Artist {
-            recording,
-            arm,
-            urdf_path,
-            name,
-            ghost: (name == "reference").then_some(REFERENCE),
-        };
+        let artist = Artist { recording, arm, urdf_path, name, ghost: (name == "reference").then_some(REFERENCE) };
         artist.draw()?;
     }
     let tool = arm.tool_frame();
@@ -48,10 +42,7 @@ pub fn reach(arm: &Arm) -> f64 {
     let lengths = between_joints.chain([&tool]).map(|pose| pose.translation.norm());
     let slides = arm.joints().iter().filter(|joint| joint.kind == JointKind::Prismatic);
     let travels = slides.map(|joint| joint.limits.lower.abs().max(joint.limits.upper.abs()));
-    lengths
-        .chain(travels.filter(|travel| travel.is_finite()))
-        .sum::<f64>()
-        .max(0.01)
+    lengths.chain(travels.filter(|travel| travel.is_finite())).sum::<f64>().max(0.01)
 }
 
 /// Draws one of the two arms.
@@ -90,9 +81,7 @@ impl Artist<'_> {
 
     fn draw_visual(&self, visual: &Visual, number: usize) -> anyhow::Result<()> {
         let entity = link_entity(self.name, visual.link).join(&format!("visual_{number}").into());
-        let own = visual
-            .colour
-            .map(|rgba| rgba.map(|part| (255.0 * part.clamp(0.0, 1.0)).round() as u8));
+        let own = visual.colour.map(|rgba| rgba.map(|part| (255.0 * part.clamp(0.0, 1.0)).round() as u8));
         let colour = self.colour(own.unwrap_or(link_colour(visual.link)));
         let mut scale = [if self.ghost.is_some() { VISUAL_SHELL } else { 1.0 }; 3];
         let shape: Box<dyn AsComponents> = match &visual.geometry {
@@ -114,9 +103,7 @@ impl Artist<'_> {
                     return Ok(());
                 };
                 // An STL has no colour of its own; the other formats do.
-                let is_plain = path
-                    .extension()
-                    .is_some_and(|format| format.eq_ignore_ascii_case("stl"));
+                let is_plain = path.extension().is_some_and(|format| format.eq_ignore_ascii_case("stl"));
                 let asset = Asset3D::from_file_path(&path).with_context(|| format!("reading {}", path.display()))?;
                 Box::new(if is_plain || own.is_some() || self.ghost.is_some() {
                     asset.with_albedo_factor(colour.0)
@@ -126,8 +113,7 @@ impl Artist<'_> {
             }
         };
         let pose = transform(&visual.link_from_visual, scale);
-        self.recording
-            .log_static(entity, &[&pose as &dyn AsComponents, &*shape])?;
+        self.recording.log_static(entity, &[&pose as &dyn AsComponents, &*shape])?;
         Ok(())
     }
 
@@ -177,11 +163,7 @@ fn transform(pose: &Pose, scale: [f64; 3]) -> Transform3D {
 /// The shortest rotation of the z axis onto `direction`.
 fn rotation_from_z(direction: &Vector3<f64>) -> rerun::Quaternion {
     let d = direction.normalize();
-    let [x, y, z, w] = if d.z < -0.999_999 {
-        [1.0, 0.0, 0.0, 0.0]
-    } else {
-        [-d.y, d.x, 0.0, 1.0 + d.z]
-    };
+    let [x, y, z, w] = if d.z < -0.999_999 { [1.0, 0.0, 0.0, 0.0] } else { [-d.y, d.x, 0.0, 1.0 + d.z] };
     let norm = (x * x + y * y + z * z + w * w).sqrt();
     rerun::Quaternion::from_xyzw([x, y, z, w].map(|part| (part / norm) as f32))
 }

@@ -58,12 +58,7 @@ impl Stream {
                 let _ = report.send(worker.run(&inbox));
             })
             .context("starting the viewer's thread")?;
-        Ok(Self {
-            jobs: Some(jobs),
-            verdict,
-            failure: None,
-            patience,
-        })
+        Ok(Self { jobs: Some(jobs), verdict, failure: None, patience })
     }
 
     /// Whether it still takes batches.
@@ -126,10 +121,7 @@ impl Stream {
             job = back;
             thread::sleep(Duration::from_millis(5));
         }
-        match self
-            .verdict
-            .recv_timeout(deadline.saturating_duration_since(Instant::now()))
-        {
+        match self.verdict.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
             Ok(Ok(())) => {}
             Ok(Err(error)) => warn(&format!("{error:#}")),
             Err(RecvTimeoutError::Timeout) => warn("the viewer did not take the end of the run in time"),

@@ -51,11 +51,7 @@ impl Corrected {
         for (joint, law) in &self.machine.dry {
             let at = Circumstance {
                 time: Some(time),
-                load: if needs_rigid {
-                    self.gear_load(*joint, &workspace.rigid, qdd)
-                } else {
-                    0.0
-                },
+                load: if needs_rigid { self.gear_load(*joint, &workspace.rigid, qdd) } else { 0.0 },
             };
             dry[*joint] += law.level(qd[*joint], at);
             opposing[*joint] += law.bias();
@@ -73,9 +69,7 @@ impl Corrected {
         let Some(time) = time else { return };
         let lasts = |contact: &&Contact| contact.start <= time && time < contact.end;
         for contact in self.machine.contacts.iter().filter(lasts) {
-            let Workspace {
-                arm: scratch, input, ..
-            } = &mut *workspace;
+            let Workspace { arm: scratch, input, .. } = &mut *workspace;
             let scratch = scratch.get_or_insert_with(|| arm::Workspace::new(&self.machine.arm));
             self.machine.arm.forward_kinematics(scratch, &input[..tau.len()]);
             let tool = scratch.base_from_frame(&self.tool).translation;

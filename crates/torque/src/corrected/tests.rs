@@ -70,27 +70,9 @@ fn friction_follows_the_sign_of_the_velocity() {
     for (qd, expected) in [(0.3, 2.0), (-0.3, -2.0), (0.0, 0.0), (-0.0, 0.0)] {
         near(added(coulomb(), 0.0, qd), expected);
     }
-    near(
-        added(Effect::of(&ViscousFriction).on(a()).with("coefficient", 4.0), 0.0, -0.5),
-        -2.0,
-    );
-    near(
-        added(
-            Effect::of(&QuadraticDrag)
-                .on(a())
-                .with("coefficient", 4.0)
-                .with("exponent", 2.0),
-            0.0,
-            -0.5,
-        ),
-        -1.0,
-    );
-    let uneven = || {
-        Effect::of(&FrictionAsymmetry)
-            .on(a())
-            .with("positive", 3.0)
-            .with("negative", 1.0)
-    };
+    near(added(Effect::of(&ViscousFriction).on(a()).with("coefficient", 4.0), 0.0, -0.5), -2.0);
+    near(added(Effect::of(&QuadraticDrag).on(a()).with("coefficient", 4.0).with("exponent", 2.0), 0.0, -0.5), -1.0);
+    let uneven = || Effect::of(&FrictionAsymmetry).on(a()).with("positive", 3.0).with("negative", 1.0);
     for (qd, expected) in [(0.3, 3.0), (-0.3, -1.0), (0.0, 0.0)] {
         near(added(uneven(), 0.0, qd), expected);
     }
@@ -105,22 +87,11 @@ fn friction_follows_the_sign_of_the_velocity() {
 
 #[test]
 fn position_makes_springs_and_ripple() {
-    near(
-        added(Effect::of(&TorqueOffset).on(a()).with("offset", -0.7), 1.0, 1.0),
-        -0.7,
-    );
-    let ripple = Effect::of(&TorqueRipple)
-        .on(a())
-        .with("amplitude", 0.5)
-        .with("periods", 6.0)
-        .with("phase", 0.1);
+    near(added(Effect::of(&TorqueOffset).on(a()).with("offset", -0.7), 1.0, 1.0), -0.7);
+    let ripple = Effect::of(&TorqueRipple).on(a()).with("amplitude", 0.5).with("periods", 6.0).with("phase", 0.1);
     near(added(ripple, 0.3, 0.0), 0.5 * 1.9_f64.sin());
     let spring = |curve: Vec<[f64; 2]>| {
-        Effect::of(&Spring)
-            .on(a())
-            .with("stiffness", 10.0)
-            .with("rest", 0.2)
-            .with("curve", curve)
+        Effect::of(&Spring).on(a()).with("stiffness", 10.0).with("rest", 0.2).with("curve", curve)
     };
     near(added(spring(vec![]), 0.5, 0.0), 3.0);
     let curve = vec![[-1.0, 4.0], [0.0, 2.0], [1.0, 3.0]];
@@ -131,11 +102,8 @@ fn position_makes_springs_and_ripple() {
 
 #[test]
 fn drift_is_warm_unless_the_time_is_given() {
-    let drift = Effect::of(&ThermalDrift)
-        .on(a())
-        .with("coulomb", 2.0)
-        .with("amplitude", 0.5)
-        .with("time_constant", 10.0);
+    let drift =
+        Effect::of(&ThermalDrift).on(a()).with("coulomb", 2.0).with("amplitude", 0.5).with("time_constant", 10.0);
     let model = Corrected::new(&arm(FLAT), &[drift]).expect("it is physical");
     let at = |time| predict(&model, time, &[0.0, 0.0], &[-1.0, 0.0], &[0.0, 0.0]).effects[0];
     near(at(None), -2.0);
@@ -146,24 +114,15 @@ fn drift_is_warm_unless_the_time_is_given() {
 #[test]
 fn load_is_the_rigid_torque_of_the_corrected_arm() {
     let effects = [
-        Effect::of(&Payload)
-            .with("mass", 1.0)
-            .with("com", [0.5, 0.0, 0.0])
-            .with("inertia", [0.0; 6]),
-        Effect::of(&LoadDependentFriction)
-            .on(a())
-            .with("coulomb", 0.5)
-            .with("gain", 0.1),
+        Effect::of(&Payload).with("mass", 1.0).with("com", [0.5, 0.0, 0.0]).with("inertia", [0.0; 6]),
+        Effect::of(&LoadDependentFriction).on(a()).with("coulomb", 0.5).with("gain", 0.1),
     ];
     let model = Corrected::new(&arm(PENDULUM), &effects).expect("it is physical");
     // Gravity on a mass along x turns the arm downwards about y: the drive holds it with a negative torque.
     let found = predict(&model, None, &[0.0], &[0.0], &[0.0]);
     near(found.rigid[0], -9.81 * 1.5);
     near(found.effects[0], 0.0);
-    near(
-        predict(&model, None, &[0.0], &[-1e-9], &[0.0]).effects[0],
-        -(0.5 + 0.1 * 9.81 * 1.5),
-    );
+    near(predict(&model, None, &[0.0], &[-1e-9], &[0.0]).effects[0], -(0.5 + 0.1 * 9.81 * 1.5));
 }
 
 #[test]
@@ -176,30 +135,12 @@ fn inertial_effects_are_in_the_rigid_part() {
     };
     let weight = -9.81 * 2.0 * 0.5;
     near(rigid(&[], 0.0, 0.0), weight);
-    near(
-        rigid(&[Effect::of(&RotorInertia).on(a()).with("inertia", 0.4)], 0.0, 2.0),
-        weight + 2.0 * (0.1 + 0.5 + 0.4),
-    );
-    near(
-        rigid(
-            &[Effect::of(&LinkInertialError).on(a()).with("relative", 0.1)],
-            0.0,
-            0.0,
-        ),
-        1.1 * weight,
-    );
-    near(
-        rigid(&[Effect::of(&InertialScale).with("factor", 1.2)], 0.0, 0.0),
-        1.2 * weight,
-    );
-    near(
-        rigid(&[Effect::of(&EncoderOffset).on(a()).with("offset", -0.3)], 0.2, 0.0),
-        weight * 0.5_f64.cos(),
-    );
+    near(rigid(&[Effect::of(&RotorInertia).on(a()).with("inertia", 0.4)], 0.0, 2.0), weight + 2.0 * (0.1 + 0.5 + 0.4));
+    near(rigid(&[Effect::of(&LinkInertialError).on(a()).with("relative", 0.1)], 0.0, 0.0), 1.1 * weight);
+    near(rigid(&[Effect::of(&InertialScale).with("factor", 1.2)], 0.0, 0.0), 1.2 * weight);
+    near(rigid(&[Effect::of(&EncoderOffset).on(a()).with("offset", -0.3)], 0.2, 0.0), weight * 0.5_f64.cos());
     // Rotating the base about the joint's own axis is equivalent to rotating the joint.
-    let tilt = Effect::of(&GravityMisalignment)
-        .with("angle", 0.3)
-        .with("axis", [0.0, 1.0, 0.0]);
+    let tilt = Effect::of(&GravityMisalignment).with("angle", 0.3).with("axis", [0.0, 1.0, 0.0]);
     near(rigid(&[tilt], 0.2, 0.0), weight * 0.5_f64.cos());
 }
 
@@ -248,10 +189,7 @@ fn scale_and_limit_come_last() {
 /// At q = 0 the tool is 1.5 m from axis a and 0.5 m from axis b, along x.
 #[test]
 fn a_contact_pushes_while_it_lasts() {
-    let contact = Effect::of(&ExternalContact)
-        .with("start", 1.0)
-        .with("duration", 0.5)
-        .with("force", [5.0, 2.0, 7.0]);
+    let contact = Effect::of(&ExternalContact).with("start", 1.0).with("duration", 0.5).with("force", [5.0, 2.0, 7.0]);
     let model = Corrected::new(&arm(FLAT), &[contact]).expect("it is physical");
     let at = |time| predict(&model, time, &[0.0; 2], &[0.0; 2], &[0.0; 2]).effects;
     assert_eq!(at(None), [0.0, 0.0]);
@@ -263,10 +201,7 @@ fn a_contact_pushes_while_it_lasts() {
 /// The gear does not transmit the torque that accelerates the rotor, which is the motor's own.
 #[test]
 fn load_dependent_friction_does_not_grow_with_the_rotors_torque() {
-    let friction = Effect::of(&LoadDependentFriction)
-        .on(a())
-        .with("coulomb", 0.5)
-        .with("gain", 0.1);
+    let friction = Effect::of(&LoadDependentFriction).on(a()).with("coulomb", 0.5).with("gain", 0.1);
     let rotor = Effect::of(&RotorInertia).on(a()).with("inertia", 7.0);
     let model = Corrected::new(&arm(PENDULUM), &[friction, rotor]).expect("they are physical");
     let prediction = predict(&model, None, &[0.0], &[1.0], &[3.0]);
@@ -280,21 +215,12 @@ fn load_dependent_friction_does_not_grow_with_the_rotors_torque() {
 #[test]
 fn loads_and_torques_agree() {
     let effects = [
-        Effect::of(&FrictionAsymmetry)
-            .on(a())
-            .with("positive", 3.0)
-            .with("negative", 1.0),
-        Effect::of(&LoadDependentFriction)
-            .on("b")
-            .with("coulomb", 0.5)
-            .with("gain", 0.1),
+        Effect::of(&FrictionAsymmetry).on(a()).with("positive", 3.0).with("negative", 1.0),
+        Effect::of(&LoadDependentFriction).on("b").with("coulomb", 0.5).with("gain", 0.1),
         Effect::of(&RotorInertia).on("b").with("inertia", 0.4),
         Effect::of(&ViscousFriction).on(a()).with("coefficient", 0.7),
         Effect::of(&Spring).on("b").with("stiffness", 3.0).with("rest", 0.1),
-        Effect::of(&ExternalContact)
-            .with("start", 0.0)
-            .with("duration", 1.0)
-            .with("force", [1.0, 2.0, 3.0]),
+        Effect::of(&ExternalContact).with("start", 0.0).with("duration", 1.0).with("force", [1.0, 2.0, 3.0]),
     ];
     let model = Corrected::new(&arm(FLAT), &effects).expect("they are physical");
     let (q, qd, qdd) = ([0.3, -0.8], [-0.5, 0.9], [2.0, -1.0]);
@@ -303,20 +229,13 @@ fn loads_and_torques_agree() {
     model.joint_loads(0.5, &mut workspace, &q, &qd, &qdd, &mut dry, &mut opposing);
     let expected = predict(&model, Some(0.5), &q, &qd, &qdd).effects;
     for j in 0..2 {
-        near(
-            dry[j] * sign(qd[j]) + opposing[j] + model.viscous()[j] * qd[j],
-            expected[j],
-        );
+        near(dry[j] * sign(qd[j]) + opposing[j] + model.viscous()[j] * qd[j], expected[j]);
     }
 }
 
 #[test]
 fn refusals_name_effect_joint_and_value() {
-    let refused = |effect| {
-        Corrected::new(&arm(FLAT), &[effect])
-            .expect_err("it is refused")
-            .to_string()
-    };
+    let refused = |effect| Corrected::new(&arm(FLAT), &[effect]).expect_err("it is refused").to_string();
     assert_eq!(
         refused(Effect::of(&CoulombFriction).on("c").with("level", 1.0)),
         "coulomb_friction: the robot has no joint \"c\"; it has a, b"
@@ -352,8 +271,6 @@ fn refusals_name_effect_joint_and_value() {
         .with("rest", 0.0)
         .with("curve", vec![[1.0, 0.0], [0.5, 0.0]]);
     assert!(refused(bent).contains("larger than the one before"));
-    let nowhere = Effect::of(&GravityMisalignment)
-        .with("angle", 0.1)
-        .with("axis", [0.0; 3]);
+    let nowhere = Effect::of(&GravityMisalignment).with("angle", 0.1).with("axis", [0.0; 3]);
     assert!(refused(nowhere).contains("axis' length is 0"));
 }

@@ -13,10 +13,9 @@ pub fn motion(time: f64, variant: usize) -> [Vec<f64>; 3] {
     let mut motion = [vec![0.0; 6], vec![0.0; 6], vec![0.0; 6]];
     for joint in 0..6 {
         let amplitude = 0.4 + 0.15 * joint as f64;
-        for (amplitude, hertz) in [
-            (amplitude, 0.22 - 0.02 * joint as f64),
-            (amplitude / 3.0, 0.12 + 0.03 * joint as f64),
-        ] {
+        for (amplitude, hertz) in
+            [(amplitude, 0.22 - 0.02 * joint as f64), (amplitude / 3.0, 0.12 + 0.03 * joint as f64)]
+        {
             let omega = std::f64::consts::TAU * (hertz + 0.06 * variant as f64);
             let (sin, cos) = (omega * time).sin_cos();
             motion[0][joint] += amplitude * sin;
@@ -42,14 +41,7 @@ pub fn samples_of(count: usize, motion: impl Fn(f64) -> [Vec<f64>; 3]) -> Sample
         let [q, qd, qdd] = motion(k as f64 / 80.0);
         exact.predict(&mut workspace, &q, &qd, &qdd, &mut prediction);
         let tau = &prediction.rigid;
-        samples
-            .push(Sample {
-                q: &q,
-                qd: &qd,
-                qdd: &qdd,
-                tau,
-            })
-            .expect("the sizes fit");
+        samples.push(Sample { q: &q, qd: &qd, qdd: &qdd, tau }).expect("the sizes fit");
     }
     samples
 }

@@ -25,20 +25,12 @@ impl Connection {
     /// The torque on the link at a deflection (rotor minus link) and its rate.
     fn torque(&self, deflection: f64, rate: f64) -> f64 {
         let stretched = deflection - deflection.clamp(-self.halfgap, self.halfgap);
-        if stretched == 0.0 {
-            0.0
-        } else {
-            self.stiffness * stretched + self.damping * rate
-        }
+        if stretched == 0.0 { 0.0 } else { self.stiffness * stretched + self.damping * rate }
     }
 
     /// The deflection under a constant torque.
     fn deflection(&self, torque: f64) -> f64 {
-        let gap = if torque == 0.0 {
-            0.0
-        } else {
-            self.halfgap.copysign(torque)
-        };
+        let gap = if torque == 0.0 { 0.0 } else { self.halfgap.copysign(torque) };
         gap + torque / self.stiffness
     }
 
@@ -117,11 +109,7 @@ impl Drives {
                 ));
             }
             drives.connections[j] = Some(Connection {
-                stiffness: if resolved || spring.is_some() {
-                    stiffness
-                } else {
-                    f64::INFINITY
-                },
+                stiffness: if resolved || spring.is_some() { stiffness } else { f64::INFINITY },
                 damping,
                 halfgap: gap,
                 rotor: resolved.then_some(rotors[j]),
@@ -134,9 +122,7 @@ impl Drives {
 
     /// Whether the rotor of joint `j` moves by itself.
     pub(super) fn is_separate(&self, j: usize) -> bool {
-        self.connections[j]
-            .as_ref()
-            .is_some_and(|connection| connection.rotor.is_some())
+        self.connections[j].as_ref().is_some_and(|connection| connection.rotor.is_some())
     }
 }
 
@@ -159,10 +145,7 @@ mod tests {
     #[test]
     fn rotor_and_link_oscillate_as_two_bodies() {
         let (inertia, mass, stiffness, step) = (0.5, 1.0, 2000.0, 1e-3);
-        let effects = [Effect::of(&JointElasticity)
-            .on("a")
-            .with("stiffness", stiffness)
-            .with("damping", 0.0)];
+        let effects = [Effect::of(&JointElasticity).on("a").with("stiffness", stiffness).with("damping", 0.0)];
         let mut drives = Drives::new(&machine(&effects), &["a".into()], &[inertia], &[mass], step);
         assert!(drives.is_separate(0) && drives.remarks.is_empty());
         let connection = drives.connections[0].as_mut().expect("there is a spring");
@@ -175,21 +158,14 @@ mod tests {
             q += qd * step + 0.5 * torque / mass * step * step;
             qd += torque / mass * step;
             let expected = 0.01 * (omega * f64::from(k) * step).cos();
-            assert!(
-                (connection.encoder() - q - expected).abs() < 2e-4,
-                "{k}: {} {expected}",
-                connection.encoder() - q
-            );
+            assert!((connection.encoder() - q - expected).abs() < 2e-4, "{k}: {} {expected}", connection.encoder() - q);
         }
     }
 
     #[test]
     fn a_rotor_without_inertia_is_deflected() {
         let effects = [
-            Effect::of(&JointElasticity)
-                .on("a")
-                .with("stiffness", 100.0)
-                .with("damping", 1.0),
+            Effect::of(&JointElasticity).on("a").with("stiffness", 100.0).with("damping", 1.0),
             Effect::of(&Backlash).on("a").with("halfgap", 0.01),
             Effect::of(&ActuationDelay).on("a").with("delay", 0.004),
         ];

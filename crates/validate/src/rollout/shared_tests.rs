@@ -71,8 +71,6 @@ fn a_delay_shows_on_its_joint() {
     let arm = Arm::from_urdf(files.join("robot.urdf")).expect("it is an arm");
     let recording = Recording::read(&files.join("train_1.csv")).expect("it is read");
     let recording = recording.regular().expect("it has a clock").0;
-    let found = &rollout(&arm, &[], &effects, &recording, &RolloutOptions::default())
-        .expect("it runs")
-        .joints[0];
+    let found = &rollout(&arm, &[], &effects, &recording, &RolloutOptions::default()).expect("it runs").joints[0];
     assert!(found.augmented_rms_rad < 0.4 * found.nominal_rms_rad, "{found:?}");
 }

@@ -56,10 +56,7 @@ pub(super) fn guiding_torque(
     let ticks = inside.map_or(0..recording.q[0].len(), |segment| segment.ticks.clone());
     // Near the end of its segment, the last cubic is continued.
     let middle = tick.clamp(ticks.start + side, ticks.end - 1 - side);
-    let [place, slope, bend] = cubic(
-        &recording.q[course.columns[j]][middle - side..=middle + side],
-        recording.period,
-    );
+    let [place, slope, bend] = cubic(&recording.q[course.columns[j]][middle - side..=middle + side], recording.period);
     let time = (tick as f64 - middle as f64) * recording.period + into;
     let (wanted, rate) = (place + time * (slope + 0.5 * time * bend), slope + time * bend);
     inertia * (bend + 2.0 * GUIDING_RATE * (rate - qd) + GUIDING_RATE * GUIDING_RATE * (wanted - q))

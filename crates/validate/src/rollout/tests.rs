@@ -21,12 +21,7 @@ fn record(
     distort: impl Fn(usize, f64, f64) -> (f64, f64),
 ) -> RegularRecording {
     let dof = arm.dof();
-    let options = PlantOptions {
-        step: 1e-3,
-        order: 2,
-        viscous: vec![viscous; dof],
-        coulomb: vec![coulomb; dof],
-    };
+    let options = PlantOptions { step: 1e-3, order: 2, viscous: vec![viscous; dof], coulomb: vec![coulomb; dof] };
     let mut plant = Plant::new(arm, &options).expect("it can be simulated");
     let reference = |j: usize, t: f64| {
         let omega = 1.3 + 0.4 * j as f64;
@@ -75,11 +70,7 @@ fn every_joint(arm: &Arm, effect: impl Fn(String) -> Effect) -> Vec<Effect> {
 fn assert_better(result: &Rollout, joints: std::ops::Range<usize>, factor: f64) {
     println!("{:?} {:?}", result.joints, result.remarks);
     for joint in &result.joints[joints] {
-        assert!(
-            joint.augmented_rms_rad * factor < joint.nominal_rms_rad,
-            "{:?}",
-            result.joints
-        );
+        assert!(joint.augmented_rms_rad * factor < joint.nominal_rms_rad, "{:?}", result.joints);
     }
     assert_eq!(result.runaway_augmented, 0);
 }
@@ -87,30 +78,19 @@ fn assert_better(result: &Rollout, joints: std::ops::Range<usize>, factor: f64) 
 #[test]
 fn named_friction_and_payload_are_simulated() {
     let nominal = puma();
-    let mut effects = every_joint(&nominal, |joint| {
-        Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.8)
-    });
-    effects.extend(every_joint(&nominal, |joint| {
-        Effect::of(&CoulombFriction).on(joint).with("level", 0.6)
-    }));
+    let mut effects = every_joint(&nominal, |joint| Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.8));
+    effects.extend(every_joint(&nominal, |joint| Effect::of(&CoulombFriction).on(joint).with("level", 0.6)));
     effects.push(
         Effect::of(&Payload)
             .with("mass", 2.0)
             .with("com", [0.0, 0.0, 0.1])
             .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.01]),
     );
-    let truth = Corrected::new(&nominal, &effects)
-        .expect("they are physical")
-        .arm()
-        .clone();
+    let truth = Corrected::new(&nominal, &effects).expect("they are physical").arm().clone();
     let recording = record(&truth, 0.8, 0.6, 6.0, as_it_is);
     let started = std::time::Instant::now();
     let result = rollout(&nominal, &[], &effects, &recording, &RolloutOptions::default()).expect("it runs");
-    println!(
-        "{:.3} s for {} windows",
-        started.elapsed().as_secs_f64(),
-        result.windows.len()
-    );
+    println!("{:.3} s for {} windows", started.elapsed().as_secs_f64(), result.windows.len());
     assert_better(&result, 0..6, 5.0);
     let again = rollout(&nominal, &[], &effects, &recording, &RolloutOptions::default()).expect("it runs");
     for (again, first) in again.windows.iter().zip(&result.windows) {
@@ -143,13 +123,8 @@ fn effects_of_drives_and_encoders_are_simulated() {
 fn windows_that_cannot_be_simulated_are_reported() {
     let arm = puma();
     let mut recording = record(&arm, 0.0, 0.0, 1.0, as_it_is);
-    let options = RolloutOptions {
-        window: 5.0,
-        ..RolloutOptions::default()
-    };
-    let error = rollout(&arm, &[], &[], &recording, &options)
-        .expect_err("it is too short")
-        .to_string();
+    let options = RolloutOptions { window: 5.0, ..RolloutOptions::default() };
+    let error = rollout(&arm, &[], &[], &recording, &options).expect_err("it is too short").to_string();
     assert!(error.contains("no gap-free part"), "{error}");
     // Torques unlike the robot's: both variants leave the windows and report it.
     for tau in &mut recording.tau {
@@ -166,9 +141,7 @@ fn windows_that_cannot_be_simulated_are_reported() {
         .to_string();
     assert!(error.contains("within one step"), "{error}");
     recording.joints[0] = "other".into();
-    let error = rollout(&arm, &[], &[], &recording, &RolloutOptions::default())
-        .expect_err("a joint lacks")
-        .to_string();
+    let error = rollout(&arm, &[], &[], &recording, &RolloutOptions::default()).expect_err("a joint lacks").to_string();
     assert!(error.contains("is not in the recording"), "{error}");
 }
 
@@ -179,10 +152,7 @@ fn a_guided_joint_follows_its_recorded_path() {
     let recording = record(&arm, 0.0, 0.0, 3.0, |j, tau, q| (if j == 5 { 20.0 } else { tau }, q));
     let free = rollout(&arm, &[], &[], &recording, &RolloutOptions::default()).expect("it runs");
     assert!(free.joints[5].nominal_rms_rad > 1.0, "{:?}", free.joints);
-    let options = RolloutOptions {
-        guided: vec![false, false, false, false, false, true],
-        ..RolloutOptions::default()
-    };
+    let options = RolloutOptions { guided: vec![false, false, false, false, false, true], ..RolloutOptions::default() };
     let guided = rollout(&arm, &[], &[], &recording, &options).expect("it runs");
     assert_eq!(guided.runaway_nominal, 0);
     let farthest = guided.joints.iter().map(|joint| joint.nominal_rms_rad);

@@ -49,18 +49,11 @@ impl Variant {
         let dof = arm.dof();
         let names: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
         let mut rotors: Vec<f64> = model.arm().joints().iter().map(|joint| joint.rotor_inertia).collect();
-        let (robot, replaced) = if effects.is_empty() {
-            (model.arm().clone(), Vec::new())
-        } else {
-            with_possible_bodies(model.arm())
-        };
+        let (robot, replaced) =
+            if effects.is_empty() { (model.arm().clone(), Vec::new()) } else { with_possible_bodies(model.arm()) };
         let links = link_inertias(&robot, &rotors);
         let mut drives = Drives::new(model.machine(), &names, &rotors, &links, course.step);
-        let guide = GUIDE
-            * links
-                .iter()
-                .chain(&rotors)
-                .fold(0.0, |most: f64, &inertia| most.max(inertia));
+        let guide = GUIDE * links.iter().chain(&rotors).fold(0.0, |most: f64, &inertia| most.max(inertia));
         for (j, rotor) in rotors.iter_mut().enumerate() {
             if course.is_guided(j) {
                 drives.connections[j] = None;
@@ -69,12 +62,8 @@ impl Variant {
                 *rotor = 0.0;
             }
         }
-        let options = PlantOptions {
-            step: course.step,
-            order: course.order,
-            viscous: model.viscous(),
-            coulomb: Vec::new(),
-        };
+        let options =
+            PlantOptions { step: course.step, order: course.order, viscous: model.viscous(), coulomb: Vec::new() };
         let mut remarks = drives.remarks.clone();
         if !replaced.is_empty() {
             remarks.push(format!(
@@ -133,9 +122,7 @@ impl Variant {
 
     /// The encoder's reading of joint `j`.
     fn encoder(&self, j: usize) -> f64 {
-        let standing = self.drives.connections[j]
-            .as_ref()
-            .map_or(self.plant.q()[j], Connection::encoder);
+        let standing = self.drives.connections[j].as_ref().map_or(self.plant.q()[j], Connection::encoder);
         standing - self.model.encoder_offsets()[j]
     }
 

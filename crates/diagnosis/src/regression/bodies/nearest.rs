@@ -24,10 +24,7 @@ pub fn nearest_tensor(wanted: &Matrix3<f64>, precision: &Matrix6<f64>) -> Option
         return None;
     }
     // Of order one.
-    let problem = Problem {
-        wanted: six(&(wanted / size)),
-        precision: precision / mean + Matrix6::identity() * RIDGE,
-    };
+    let problem = Problem { wanted: six(&(wanted / size)), precision: precision / mean + Matrix6::identity() * RIDGE };
     let wanted = wanted / size;
     let mut eigen = SymmetricEigen::new(second_moments(&wanted));
     eigen.eigenvalues.apply(|value| *value = value.max(FIRST));
@@ -98,13 +95,7 @@ impl Gradient for Problem {
     fn gradient(&self, entries: &Vec<f64>) -> Result<Vec<f64>, Error> {
         // The derivative by the six entries of I, and from it that by Σ and by L.
         let by_tensor = tensor((self.precision * self.off(entries)).into());
-        let halved = Matrix3::from_fn(|i, k| {
-            if i == k {
-                by_tensor[(i, k)]
-            } else {
-                0.5 * by_tensor[(i, k)]
-            }
-        });
+        let halved = Matrix3::from_fn(|i, k| if i == k { by_tensor[(i, k)] } else { 0.5 * by_tensor[(i, k)] });
         let by_second = Matrix3::identity() * by_tensor.trace() - halved;
         let by_lower = by_second * Self::lower(entries) * 2.0;
         Ok(Self::ENTRIES.map(|at| by_lower[at]).to_vec())

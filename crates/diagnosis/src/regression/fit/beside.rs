@@ -32,9 +32,7 @@ impl Products {
             });
             Some(rss[joint] - right.dot(&matrix.cholesky()?.solve(&right)))
         };
-        (0..rss.len())
-            .map(|joint| beside(joint).unwrap_or(rss[joint]))
-            .collect()
+        (0..rss.len()).map(|joint| beside(joint).unwrap_or(rss[joint])).collect()
     }
 }
 
@@ -67,10 +65,7 @@ mod tests {
         table.joints[0].stretches = stretches;
         let held = Products::new(&table, |_| true, &[0.02], &[0.4], &[1e-4]);
         // A fit to other recordings, in which friction is smaller.
-        let fit = Fit {
-            coefficients: vec![1.0, 0.5],
-            ..held.solve(&table, &[0, 1], &[1.0])
-        };
+        let fit = Fit { coefficients: vec![1.0, 0.5], ..held.solve(&table, &[0, 1], &[1.0]) };
         let rss = held.rss(&table, &fit.columns, &fit.coefficients);
         let deviations = [0.2, 0.1];
         let corrections = [Some([(0, deviations[0]), (1, deviations[1])])];

@@ -267,9 +267,7 @@ impl Products {
         };
         let mut missing: Vec<usize> = Vec::with_capacity(others.len());
         for (k, &b) in others.iter().enumerate() {
-            let bits = eliminated
-                .place(a, b)
-                .map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
+            let bits = eliminated.place(a, b).map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
             if bits == NOT_FORMED {
                 missing.push(k);
             } else {
@@ -307,9 +305,8 @@ impl Products {
             Some(joint) => self.evidence_per_row(joint),
             None => {
                 let moved = (0..self.count.len()).filter(|&joint| self.count[joint] > 0.0);
-                let (sum, count) = moved.fold((0.0, 0.0), |(sum, count), joint| {
-                    (sum + self.evidence_per_row(joint), count + 1.0)
-                });
+                let (sum, count) =
+                    moved.fold((0.0, 0.0), |(sum, count), joint| (sum + self.evidence_per_row(joint), count + 1.0));
                 sum / f64::max(count, 1.0)
             }
         }

@@ -43,8 +43,6 @@ impl Products {
     /// The standard deviation of a column on a joint; `place` is its index.
     pub fn spread(&self, joint: usize, place: usize) -> f64 {
         let (gram, n) = (&self.gram[joint], self.count[joint].max(1.0));
-        (gram.of(place, place) / n - (gram.sum_of(place) / n).powi(2))
-            .max(0.0)
-            .sqrt()
+        (gram.of(place, place) / n - (gram.sum_of(place) / n).powi(2)).max(0.0).sqrt()
     }
 }

@@ -34,10 +34,7 @@ impl Products {
     /// The fit of `columns` on `joint` for [`Self::gains`]. `weights` are those of the joints; if there is a background, it comes
     /// first in `columns` and keeps its prior.
     pub fn left_out<'a>(&self, table: &'a Table, joint: usize, columns: &'a [usize], weights: &[f64]) -> LeftOut<'a> {
-        let places: Vec<usize> = columns
-            .iter()
-            .filter_map(|&column| table.place[joint][column])
-            .collect();
+        let places: Vec<usize> = columns.iter().filter_map(|&column| table.place[joint][column]).collect();
         let scale = weights[joint] * self.evidence_per_row(joint);
         let mut base = LeftOut {
             joint,
@@ -68,9 +65,7 @@ impl Products {
         let with = [&base.places[..], &new].concat();
         let folds = base.groups.iter().zip(&base.folds);
         let folds: Vec<DMatrix<f64>> = folds.map(|(group, known)| extended(group, known, &with)).collect();
-        let (_, rss) = fitted(&folds, &base.prior, |gram, k| {
-            base.fits[k].with(gram, with.len(), &base.prior)
-        });
+        let (_, rss) = fitted(&folds, &base.prior, |gram, k| base.fits[k].with(gram, with.len(), &base.prior));
         let gain = |k: usize| self.joint_loss(base.joint, base.rss[k]) - self.joint_loss(base.joint, rss[k]);
         (gain(0), gain(1))
     }
@@ -83,9 +78,7 @@ impl Products {
         // The columns of each joint, with their inner products over each group.
         let joints: Vec<(Vec<usize>, Vec<DMatrix<f64>>)> = (0..table.dof())
             .map(|joint| {
-                let mine: Vec<usize> = (0..all.len())
-                    .filter(|&i| table.place[joint][all[i]].is_some())
-                    .collect();
+                let mine: Vec<usize> = (0..all.len()).filter(|&i| table.place[joint][all[i]].is_some()).collect();
                 let places: Vec<usize> = mine.iter().filter_map(|&i| table.place[joint][all[i]]).collect();
                 let groups = self.groups(table, joint, true);
                 let folds = groups.iter().map(|group| gram(group, &places)).collect();
@@ -131,38 +124,21 @@ impl Products {
     /// The prior of the background's columns that `acts` selects, where sums of squares are weighted by `scale`.
     fn prior(&self, acts: impl Fn(usize) -> bool, scale: f64) -> ColumnPrior {
         let Some(background) = &self.background else {
-            return ColumnPrior {
-                precision: DMatrix::zeros(0, 0),
-                pull: DVector::zeros(0),
-            };
+            return ColumnPrior { precision: DMatrix::zeros(0, 0), pull: DVector::zeros(0) };
         };
-        let mine: Vec<usize> = (0..background.columns.len())
-            .filter(|&k| acts(background.columns[k]))
-            .collect();
+        let mine: Vec<usize> = (0..background.columns.len()).filter(|&k| acts(background.columns[k])).collect();
         let entry = |i: usize, k: usize| background.precision[(mine[i], mine[k])] / scale;
         let precision = DMatrix::from_fn(mine.len(), mine.len(), entry);
         let centre = DVector::from_fn(mine.len(), |i, _| background.centre[mine[i]]);
-        ColumnPrior {
-            pull: &precision * centre,
-            precision,
-        }
+        ColumnPrior { pull: &precision * centre, precision }
     }
 
     /// Groups of the recordings of a joint, or its stretches if there is only one. With `common`, the groups are the same on all
     /// joints.
     fn groups<'a>(&self, table: &'a Table, joint: usize, common: bool) -> Vec<Vec<&'a Stretch>> {
         let this = &table.joints[joint];
-        let excited: Vec<usize> = self
-            .recordings
-            .iter()
-            .copied()
-            .filter(|&r| common || this.count[r] > 0)
-            .collect();
-        let of = |recording: usize| {
-            this.stretches
-                .iter()
-                .filter(move |stretch| stretch.recording == recording)
-        };
+        let excited: Vec<usize> = self.recordings.iter().copied().filter(|&r| common || this.count[r] > 0).collect();
+        let of = |recording: usize| this.stretches.iter().filter(move |stretch| stretch.recording == recording);
         if let [only] = excited[..] {
             of(only).map(|stretch| vec![stretch]).collect()
         } else {
@@ -185,8 +161,7 @@ fn extended(group: &[&Stretch], known: &DMatrix<f64>, places: &[usize]) -> DMatr
     for k in 0..=p {
         let from = if k < before { before } else { 0 };
         if k < before {
-            gram.view_mut((0, k), (before, 1))
-                .copy_from(&known.view((0, k), (before, 1)));
+            gram.view_mut((0, k), (before, 1)).copy_from(&known.view((0, k), (before, 1)));
         }
         for i in from..=p {
             gram[(i, k)] = group
@@ -233,11 +208,7 @@ struct Normal {
 /// An inner product, with the precision of `prior`.
 fn entry(gram: &DMatrix<f64>, prior: &ColumnPrior, i: usize, k: usize) -> f64 {
     let known = prior.precision.nrows();
-    let own = if i < known && k < known {
-        prior.precision[(i, k)]
-    } else {
-        0.0
-    };
+    let own = if i < known && k < known { prior.precision[(i, k)] } else { 0.0 };
     gram[(i, k)] + own
 }
 
@@ -250,10 +221,7 @@ impl Normal {
     fn new(gram: &DMatrix<f64>, p: usize, prior: &ColumnPrior) -> Self {
         let scale: Vec<f64> = (0..p).map(|i| scale(entry(gram, prior, i, i))).collect();
         let matrix = DMatrix::from_fn(p, p, |i, k| entry(gram, prior, i, k) / (scale[i] * scale[k]));
-        Self {
-            scale,
-            factor: cholesky(&matrix),
-        }
+        Self { scale, factor: cholesky(&matrix) }
     }
 
     /// The fit of the first `p` columns, of which this fit has the first ones: its factor is extended by rows. The result

@@ -24,9 +24,7 @@ pub struct Stretch {
 /// Consecutive runs of `rows`, which ascend.
 fn runs(rows: &[usize]) -> Vec<Range<usize>> {
     let follows = |a: &usize, b: &usize| a + 1 == *b;
-    rows.chunk_by(follows)
-        .map(|run| run[0]..run[run.len() - 1] + 1)
-        .collect()
+    rows.chunk_by(follows).map(|run| run[0]..run[run.len() - 1] + 1).collect()
 }
 
 impl Stretch {
@@ -39,11 +37,7 @@ impl Stretch {
         let fitted = (0..rows.len()).filter(is_fitted).count();
         let mut stretches = Vec::with_capacity(rows.len() + STRETCHES - 1);
         for (recording, rows) in rows.iter().enumerate() {
-            let pieces = if fitted == 1 && is_fitted(&recording) {
-                STRETCHES
-            } else {
-                1
-            };
+            let pieces = if fitted == 1 && is_fitted(&recording) { STRETCHES } else { 1 };
             let length = rows.len().div_ceil(pieces).max(1);
             stretches.extend(rows.chunks(length).map(|rows| Self {
                 recording,
@@ -143,13 +137,8 @@ impl Gram {
             _ => 0.0,
         };
         Gram {
-            rows: (0..places.len())
-                .map(|k| (0..=k).map(|i| of(places[i], places[k])).collect())
-                .collect(),
-            right: places
-                .iter()
-                .map(|place| place.map_or(0.0, |i| self.right[i]))
-                .collect(),
+            rows: (0..places.len()).map(|k| (0..=k).map(|i| of(places[i], places[k])).collect()).collect(),
+            right: places.iter().map(|place| place.map_or(0.0, |i| self.right[i])).collect(),
             square: self.square,
             sums: places.iter().map(|place| place.map_or(0.0, |i| self.sums[i])).collect(),
         }

@@ -46,10 +46,8 @@ impl<'a> Columns<'a> {
         let drive = PER_LINK * dof + DRIVE * joint;
         let links = (0..PER_LINK * dof).map(|number| (number, column(&inertial(number))));
         let friction = (0..2).map(|k| (drive + k, column(&friction[k])));
-        let (unknowns, columns): (Vec<usize>, Vec<&Vec<f64>>) = links
-            .chain(friction)
-            .filter_map(|(unknown, column)| Some((unknown, column?)))
-            .unzip();
+        let (unknowns, columns): (Vec<usize>, Vec<&Vec<f64>>) =
+            links.chain(friction).filter_map(|(unknown, column)| Some((unknown, column?))).unzip();
         let mut resting = vec![false; this.y.len()];
         for row in data.resting_rows(joint) {
             resting[row] = !this.moving[row];
@@ -85,14 +83,10 @@ impl<'a> Columns<'a> {
 
 /// By how much the load of `solution` reduces the squares of the residuals on each row, if it acts there.
 pub fn gains(data: &Data, table: &Table, variances: &Variances, solution: &Solution) -> Vec<f64> {
-    let columns: Vec<Columns<'_>> = (0..data.motions.dof)
-        .map(|joint| Columns::new(data, table, joint))
-        .collect();
+    let columns: Vec<Columns<'_>> = (0..data.motions.dof).map(|joint| Columns::new(data, table, joint)).collect();
     let of_row = |row: usize| -> f64 {
         let joints = columns.iter().zip(&variances.0);
-        joints
-            .map(|(joint, variances)| joint.gain(row, *variances, solution))
-            .sum()
+        joints.map(|(joint, variances)| joint.gain(row, *variances, solution)).sum()
     };
     (0..table.len()).map(of_row).collect()
 }
@@ -113,14 +107,7 @@ impl Part {
     /// The parts of `joint`, one for each of the `stretches` of rows.
     pub fn of_joint(data: &Data, table: &Table, joint: usize, stretches: &[Range<usize>]) -> Vec<Self> {
         let of_joint = Columns::new(data, table, joint);
-        let Columns {
-            unknowns,
-            columns,
-            inertials,
-            drive,
-            torque: y,
-            ..
-        } = &of_joint;
+        let Columns { unknowns, columns, inertials, drive, torque: y, .. } = &of_joint;
         let friction = columns.len() - inertials;
         let part = |stretch: usize| {
             let range = &stretches[stretch];
@@ -153,11 +140,7 @@ impl Part {
 
     /// The sums of squares of the residuals of `solution`, in motion and at rest.
     fn residuals(&self, solution: &Solution) -> [f64; 2] {
-        let mut miss: Vec<f64> = self
-            .unknowns
-            .iter()
-            .map(|&unknown| -solution.of(self, unknown))
-            .collect();
+        let mut miss: Vec<f64> = self.unknowns.iter().map(|&unknown| -solution.of(self, unknown)).collect();
         miss.push(1.0);
         let miss = DVector::from_vec(miss);
         [0, 1].map(|k| miss.dot(&(&self.products[k] * &miss)).max(0.0))
@@ -237,13 +220,8 @@ impl Solution {
 /// two add up. `None` if they have no inverse.
 fn beside_load(background: &Background, last: usize) -> Option<DMatrix<f64>> {
     let of_last = |&(_, &column): &(usize, &usize)| (last..last + PER_LINK).contains(&column);
-    let (places, parameters): (Vec<usize>, Vec<usize>) = background
-        .columns
-        .iter()
-        .enumerate()
-        .filter(of_last)
-        .map(|(place, column)| (place, column - last))
-        .unzip();
+    let (places, parameters): (Vec<usize>, Vec<usize>) =
+        background.columns.iter().enumerate().filter(of_last).map(|(place, column)| (place, column - last)).unzip();
     let mut precision = background.precision.clone();
     let block = DMatrix::from_fn(places.len(), places.len(), |a, b| precision[(places[a], places[b])]);
     let mut covariance = block.try_inverse()?;
@@ -272,13 +250,7 @@ impl LoadEquations {
         let last = inertials - PER_LINK;
         let mut matrix = DMatrix::zeros(size, size);
         let mut right = DVector::zeros(size);
-        let empty = || {
-            (
-                DMatrix::zeros(size, LOAD),
-                DMatrix::zeros(LOAD, LOAD),
-                DVector::zeros(LOAD),
-            )
-        };
+        let empty = || (DMatrix::zeros(size, LOAD), DMatrix::zeros(LOAD, LOAD), DVector::zeros(LOAD));
         let mut loads: Vec<_> = (0..stretches).map(|_| empty()).collect();
         for part in parts {
             let [moving, resting] = variances.0[part.joint];
@@ -316,13 +288,7 @@ impl LoadEquations {
         }
         let factor = Cholesky::new(matrix)?;
         let solved = loads.iter().map(|(cross, ..)| factor.solve(cross)).collect();
-        Some(Self {
-            common: factor.solve(&right),
-            right,
-            loads,
-            solved,
-            last,
-        })
+        Some(Self { common: factor.solve(&right), right, loads, solved, last })
     }
 
     /// The solution with the same load in all stretches.

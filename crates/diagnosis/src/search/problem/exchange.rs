@@ -57,24 +57,13 @@ impl Problem<'_> {
     /// torque constants but one that have the inverse of a factor of all masses resemble the factor of the one.
     fn other_constants(&self, selected: &Selection, allowed: &[usize]) -> Option<Selection> {
         let spec = |c: usize| self.candidates[c].hypothesis.spec();
-        let common = selected
-            .set
-            .iter()
-            .find_map(|&c| Some((c, spec(c).same_on_all_joints?)));
+        let common = selected.set.iter().find_map(|&c| Some((c, spec(c).same_on_all_joints?)));
         let (factor, constant) = common?;
         let is_constant = |c: &usize| spec(*c).name == constant && self.acts(&self.candidates[*c]) == Acts::Always;
-        let named: Vec<Option<usize>> = selected
-            .set
-            .iter()
-            .copied()
-            .filter(is_constant)
-            .map(|c| self.candidates[c].joint)
-            .collect();
+        let named: Vec<Option<usize>> =
+            selected.set.iter().copied().filter(is_constant).map(|c| self.candidates[c].joint).collect();
         let rest = selected.others(factor).into_iter().filter(|c| !is_constant(c));
-        let others = allowed
-            .iter()
-            .copied()
-            .filter(|c| is_constant(c) && !named.contains(&self.candidates[*c].joint));
+        let others = allowed.iter().copied().filter(|c| is_constant(c) && !named.contains(&self.candidates[*c].joint));
         let set = rest.chain(others).collect();
         Some(self.prune(self.choose(set, &selected.fit.weights)))
     }

@@ -23,10 +23,8 @@ impl Problem<'_> {
             // by one that always acts and a change of it.
             return is_one_effect && when != Acts::Always && then != Acts::Always;
         }
-        let ([first, second], [one, other]) = (
-            [a, b].map(|c| &self.table.terms[c.columns[0]]),
-            [a.hypothesis, b.hypothesis],
-        );
+        let ([first, second], [one, other]) =
+            ([a, b].map(|c| &self.table.terms[c.columns[0]]), [a.hypothesis, b.hypothesis]);
         if is_one_effect {
             one.other == other.other && one.kind.get().is_same(first, second)
         } else {

@@ -53,9 +53,7 @@ impl Problem<'_> {
             .collect();
         let (first, rest) = growth.by_promise(free);
         let mut promises = self.promises(selected, &first);
-        growth
-            .promises
-            .extend(promises.iter().map(|&(promise, c)| (c, promise)));
+        growth.promises.extend(promises.iter().map(|&(promise, c)| (c, promise)));
         let mut fitted = Vec::new();
         if !rest.is_empty() {
             if let Some(best) = self.best_of(selected, promises.clone(), growth, &mut fitted) {
@@ -170,17 +168,10 @@ impl Problem<'_> {
         let Some(joint) = candidate.joint else {
             return on_the_arm();
         };
-        let fit = || {
-            self.products
-                .left_out(self.table, joint, columns, &selected.fit.weights)
-        };
+        let fit = || self.products.left_out(self.table, joint, columns, &selected.fit.weights);
         let base = bases[joint].get_or_init(fit);
         let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
-        let needed = if candidate.hypothesis.name().is_none() {
-            self.thresholds.predicted * inside
-        } else {
-            0.0
-        };
+        let needed = if candidate.hypothesis.name().is_none() { self.thresholds.predicted * inside } else { 0.0 };
         // A coupling acts on two joints, and may show on the other one. Unmodelled forms of another joint's motion act on one.
         let is_coupling = candidate.hypothesis.name().is_some() && candidate.hypothesis.other.is_some();
         outside > needed || (is_coupling && on_the_arm())

@@ -12,9 +12,7 @@ impl Problem<'_> {
         columns.sort_unstable();
         columns.dedup();
         let reduced = self.products.reduced(self.table, &selected.fit, &columns);
-        free.par_iter()
-            .map(|&candidate| (self.promise(selected, candidate, &reduced), candidate))
-            .collect()
+        free.par_iter().map(|&candidate| (self.promise(selected, candidate, &reduced), candidate)).collect()
     }
 
     /// The columns of `candidate` that `selected` does not have.
@@ -33,11 +31,7 @@ impl Problem<'_> {
         }
         let (drop, coefficient) = self.products.drop(self.table, &selected.fit, &new, reduced);
         let own = &self.candidates[candidate];
-        let misfit = if new[0] == own.columns[0] {
-            self.misfit_of(own, coefficient)
-        } else {
-            0.0
-        };
+        let misfit = if new[0] == own.columns[0] { self.misfit_of(own, coefficient) } else { 0.0 };
         let cost = own.cost - self.thresholds.per_coefficient * (own.columns.len() - new.len()) as f64;
         let log = |drop: f64, joint: usize| {
             let count = self.products.count[joint].max(1.0);

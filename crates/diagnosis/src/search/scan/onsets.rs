@@ -24,26 +24,15 @@ pub fn onsets(
     }
     let mut rows = table.rows_of(|recording| data.fitted[recording]);
     rows.sort_by(|&a, &b| times[b].total_cmp(&times[a]));
-    let past = Past {
-        table,
-        weights,
-        times,
-        residual,
-        rows,
-    };
+    let past = Past { table, weights, times, residual, rows };
     let dof = table.dof();
-    let mut kinds: Vec<(Kind, SetsIn)> = Kind::all()
-        .filter_map(|kind| Some((kind, kind.get().sets_in()?)))
-        .collect();
+    let mut kinds: Vec<(Kind, SetsIn)> = Kind::all().filter_map(|kind| Some((kind, kind.get().sets_in()?))).collect();
     kinds.sort_by_key(|(_, form)| form.turn);
     let (on_arm, on_joint): (Vec<_>, Vec<_>) = kinds.into_iter().partition(|(kind, _)| kind.spec().scope == Scope::Arm);
     let all: Vec<usize> = (0..dof).collect();
-    let places = all
-        .iter()
-        .flat_map(|&joint| on_joint.iter().map(move |&(kind, form)| (Some(joint), kind, form)));
-    let places: Vec<(Option<usize>, Kind, SetsIn)> = places
-        .chain(on_arm.iter().map(|&(kind, form)| (None, kind, form)))
-        .collect();
+    let places = all.iter().flat_map(|&joint| on_joint.iter().map(move |&(kind, form)| (Some(joint), kind, form)));
+    let places: Vec<(Option<usize>, Kind, SetsIn)> =
+        places.chain(on_arm.iter().map(|&(kind, form)| (None, kind, form))).collect();
     places
         .into_par_iter()
         .flat_map_iter(|(joint, kind, form)| {
@@ -88,22 +77,11 @@ impl Past<'_> {
             return None;
         }
         let moves = |row: &&usize| joints.iter().any(|&joint| table.joints[joint].moving[**row]);
-        let (latest, earliest) = (
-            times[*self.rows.iter().find(moves)?],
-            times[*self.rows.iter().rev().find(moves)?],
-        );
+        let (latest, earliest) = (times[*self.rows.iter().find(moves)?], times[*self.rows.iter().rev().find(moves)?]);
         let about = |found: f64| {
-            [
-                (found - TRIED_ONSETS).max(earliest + ONSET_FROM_END),
-                (found + TRIED_ONSETS).min(latest - ONSET_FROM_END),
-            ]
+            [(found - TRIED_ONSETS).max(earliest + ONSET_FROM_END), (found + TRIED_ONSETS).min(latest - ONSET_FROM_END)]
         };
-        let coarse = self.scan(
-            joints,
-            &columns,
-            [earliest + ONSET_FROM_END, latest - ONSET_FROM_END],
-            TRIED_ONSETS,
-        )?;
+        let coarse = self.scan(joints, &columns, [earliest + ONSET_FROM_END, latest - ONSET_FROM_END], TRIED_ONSETS)?;
         self.scan(joints, &columns, about(coarse), FINE_ONSETS)
     }
 

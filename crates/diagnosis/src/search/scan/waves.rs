@@ -33,10 +33,7 @@ pub fn waves(
     };
     let last = samples.iter().fold(first, |last, sample| last.max(sample.time));
     let span = (last - first).max(1.0);
-    let (low, high) = (
-        TAU * WAVE_FREQUENCIES.0,
-        TAU * WAVE_FREQUENCIES.1.min(WAVE_CUTOFF * motions.cutoff),
-    );
+    let (low, high) = (TAU * WAVE_FREQUENCIES.0, TAU * WAVE_FREQUENCIES.1.min(WAVE_CUTOFF * motions.cutoff));
     if high <= low {
         return Vec::new();
     }
@@ -64,9 +61,7 @@ pub fn waves(
     let to = ((high / step).ceil() as usize).min(size / 2 - 1);
     let values: Vec<f64> = (from..=to).map(at).collect();
     peaks(from as f64 * step, step, &values, most, |omega| {
-        power(&samples, |sample| {
-            ((omega * sample.time).sin(), (omega * sample.time).cos())
-        })
+        power(&samples, |sample| ((omega * sample.time).sin(), (omega * sample.time).cos()))
     })
 }
 
@@ -80,10 +75,7 @@ fn densest(samples: Vec<Sample>) -> Vec<Sample> {
         return samples;
     };
     let span = times[from]..=times[from] + LONGEST;
-    samples
-        .into_iter()
-        .filter(|sample| span.contains(&sample.time))
-        .collect()
+    samples.into_iter().filter(|sample| span.contains(&sample.time)).collect()
 }
 
 #[cfg(test)]
@@ -92,12 +84,7 @@ mod tests {
 
     #[test]
     fn the_densest_hours_of_several_days_are_searched() {
-        let at = |time: f64| Sample {
-            time,
-            q: 0.0,
-            qd: 0.0,
-            residual: 1.0,
-        };
+        let at = |time: f64| Sample { time, q: 0.0, qd: 0.0, residual: 1.0 };
         let day = 86_400.0;
         let times = [0.0, 10.0, day, day + 10.0, day + 9000.0, 400.0 * day];
         let kept: Vec<f64> = densest(times.map(at).into()).iter().map(|sample| sample.time).collect();

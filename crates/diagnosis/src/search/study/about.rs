@@ -91,13 +91,7 @@ impl About {
         load: &Matrix3<f64>,
     ) -> Self {
         let inertial = inertial_changes(data, table, fit);
-        let Carried {
-            mut arm,
-            offset,
-            payload,
-            tilt: [x, y],
-            gravity,
-        } = found;
+        let Carried { mut arm, offset, payload, tilt: [x, y], gravity } = found;
         let tilt = Vector3::new(x, y, 0.0);
         let has_moments = payload[WITHOUT_MOMENTS..].iter().any(|&moment| moment != 0.0);
         let finish = |mut arm: Arm| {
@@ -120,10 +114,8 @@ impl About {
         let first = Vector3::new(payload[1], payload[2], payload[3]);
         let is_without = |(term, _): &(Term, f64)| term.always().is(&PAYLOAD_WITHOUT_MOMENTS);
         // Also where this stage has no such payload, because the signals of all stages are the same ones.
-        let moments = carried
-            .iter()
-            .any(is_without)
-            .then(|| moments_by_first(if has_moments { 0.0 } else { payload[0] }, first));
+        let moments =
+            carried.iter().any(is_without).then(|| moments_by_first(if has_moments { 0.0 } else { payload[0] }, first));
         let is_changed = inertial.iter().any(|&value| value != 0.0);
         let bare = is_changed.then(|| finish(arm.clone()));
         if is_changed {
@@ -135,13 +127,7 @@ impl About {
                 .collect();
             arm = arm.with_inertias(&bodies);
         }
-        Self {
-            arm: finish(arm),
-            offset,
-            bare,
-            moments,
-            carried,
-        }
+        Self { arm: finish(arm), offset, bare, moments, carried }
     }
 }
 
@@ -195,11 +181,8 @@ mod tests {
         let arm = Arm::from_urdf_text(urdf, "trio.urdf").expect("it is an arm");
         let ticks = 20;
         let signal = |turn: f64| {
-            let of = |joint: usize| {
-                (0..ticks)
-                    .map(move |tick| (turn + joint as f64 + 0.3 * tick as f64).sin())
-                    .collect()
-            };
+            let of =
+                |joint: usize| (0..ticks).map(move |tick| (turn + joint as f64 + 0.3 * tick as f64).sin()).collect();
             (0..3).map(of).collect::<Vec<Vec<f64>>>()
         };
         let chunk = Chunk {
@@ -217,11 +200,7 @@ mod tests {
         let values = [0.6, 0.05, -0.02, 0.1];
         let along = |values: [f64; 4], moments: Option<[[f64; 6]; 4]>| {
             let [mass, x, y, z] = values;
-            let payload = Inertia {
-                mass,
-                com: Vector3::new(x, y, z) / mass,
-                tensor: Matrix3::identity() * 1e-3,
-            };
+            let payload = Inertia { mass, com: Vector3::new(x, y, z) / mass, tensor: Matrix3::identity() * 1e-3 };
             let about = About {
                 arm: arm.clone().with_payload(&payload),
                 offset: vec![0.0; 3],
@@ -244,10 +223,7 @@ mod tests {
                 for tick in 0..ticks {
                     let expected = (after[joint][tick] - before[joint][tick]) / 2e-5;
                     let found = columns[joint][10 + parameter][tick];
-                    assert!(
-                        (found - expected).abs() < 1e-6 * expected.abs().max(1.0),
-                        "{found} for {expected}"
-                    );
+                    assert!((found - expected).abs() < 1e-6 * expected.abs().max(1.0), "{found} for {expected}");
                 }
             }
         }

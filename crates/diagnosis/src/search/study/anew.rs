@@ -43,9 +43,7 @@ impl Study {
         moving: Moving,
         strengths: &Strengths,
     ) -> (Table, Products) {
-        let Data {
-            motions, rigid, scales, ..
-        } = &self.data;
+        let Data { motions, rigid, scales, .. } = &self.data;
         let background = 0..self.prior.terms().len();
         let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
         let mut empty = Table::new(motions, rigid, scales, Vec::new(), &[], moving);
@@ -57,9 +55,7 @@ impl Study {
         if !more.is_empty() {
             table.add(motions, rigid, scales, more, None);
         }
-        let products = self
-            .bare_products(&table, false)
-            .with_background(self.prior.at(strengths));
+        let products = self.bare_products(&table, false).with_background(self.prior.at(strengths));
         (table, products)
     }
 
@@ -126,9 +122,7 @@ impl Study {
         if strongest == 0.0 {
             return selected;
         }
-        let mut bodies = self
-            .prior
-            .possible(&inertial_changes(&self.data, &self.table, &selected.fit));
+        let mut bodies = self.prior.possible(&inertial_changes(&self.data, &self.table, &selected.fit));
         for _ in 0..MOST_BODY_STEPS {
             self.prior.set_bodies(&bodies);
             let products = self.training_products();
@@ -155,13 +149,8 @@ impl Study {
         self.carries = carries;
         self.carried.clone_from(&last.carried);
         let nominal = self.data.arm.inertial_parameters();
-        let rigid: Vec<Rigid> = self
-            .data
-            .motions
-            .chunks
-            .par_iter()
-            .map(|chunk| About::along(&stages, &nominal, chunk))
-            .collect();
+        let rigid: Vec<Rigid> =
+            self.data.motions.chunks.par_iter().map(|chunk| About::along(&stages, &nominal, chunk)).collect();
         let before = self.with_rest_of(fit, rigid);
         for joint in 0..self.data.motions.dof {
             let before = || before.iter().map(|rigid| rigid.tau[joint].clone()).collect();
@@ -175,14 +164,8 @@ impl Study {
         let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
         let mut old = std::mem::take(&mut self.table);
         old.retain(|term| !term.is_dynamic() || keeps(term));
-        self.table = old.formed_anew(
-            &self.data.motions,
-            &self.data.rigid,
-            &self.data.scales,
-            terms,
-            &last.carried,
-            self.moving,
-        );
+        self.table =
+            old.formed_anew(&self.data.motions, &self.data.rigid, &self.data.scales, terms, &last.carried, self.moving);
         Some(set)
     }
 
@@ -231,10 +214,7 @@ impl Study {
             let known = self.carried.iter().find(|(term, _)| *term == self.table.terms[column]);
             known.map_or(0.0, |(_, value)| *value)
         };
-        let change: Vec<f64> = columns
-            .iter()
-            .map(|&column| fit.coefficient(column) - before(column))
-            .collect();
+        let change: Vec<f64> = columns.iter().map(|&column| fit.coefficient(column) - before(column)).collect();
         (0..self.data.motions.dof).all(|joint| {
             let torque = self.table.torque(joint, &columns, &change);
             rms(torque).unwrap_or(0.0) <= SETTLED * self.data.scales.torque[joint]
@@ -244,9 +224,7 @@ impl Study {
     fn have_drives_settled(&self, fit: &Fit) -> bool {
         let changes = |&column: &usize| {
             let term = self.table.terms[column];
-            (term.always().is(&RIGID) && term.onset().is_some())
-                .then(|| term.joint())
-                .flatten()
+            (term.always().is(&RIGID) && term.onset().is_some()).then(|| term.joint()).flatten()
         };
         let joints: Vec<usize> = fit.columns.iter().filter_map(changes).collect();
         if joints.is_empty() {
@@ -339,10 +317,7 @@ impl Study {
     /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
-        self.strengths = Strengths {
-            least: self.strengths.least.clone(),
-            ..self.stated.first(self.data.arm.dof())
-        };
+        self.strengths = Strengths { least: self.strengths.least.clone(), ..self.stated.first(self.data.arm.dof()) };
         let products = self.training_products();
         let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
         self.about(&nothing.fit, &[], true);

@@ -24,10 +24,7 @@ impl Study {
         if !selected.set.iter().any(is_wrong_mass) {
             return selected;
         }
-        let has_factor = selected
-            .set
-            .iter()
-            .any(|&c| self.changes(c) && self.is_factor_of_masses(c));
+        let has_factor = selected.set.iter().any(|&c| self.changes(c) && self.is_factor_of_masses(c));
         let most = selected.score + if has_factor { FACTOR_OF_MASSES } else { 0.0 };
         let before = (self.strengths.clone(), self.prior.clone());
         let mut kept = selected.set.clone();
@@ -84,9 +81,7 @@ impl Study {
     }
 
     fn is_factor_of_masses(&self, candidate: usize) -> bool {
-        OF_MASSES
-            .iter()
-            .any(|&kind| self.candidates[candidate].hypothesis.is(kind))
+        OF_MASSES.iter().any(|&kind| self.candidates[candidate].hypothesis.is(kind))
     }
 
     /// Whether torque constants may explain a change: of masses by a factor, of friction, or of one constant.

@@ -61,10 +61,7 @@ impl Study {
         let known = |list: &mut List| {
             list.renew(self.table.identity(), self.prior.identity());
             let is_same = |(held, with, _): &&(bool, Strengths, Products)| (*held, with) == (held_out, strengths);
-            list.with_background
-                .iter()
-                .find(is_same)
-                .map(|(.., products)| products.clone())
+            list.with_background.iter().find(is_same).map(|(.., products)| products.clone())
         };
         if let Some(products) = self.stored(known) {
             return products;
@@ -76,8 +73,7 @@ impl Study {
             if list.with_background.len() == KEPT {
                 list.with_background.remove(0);
             }
-            list.with_background
-                .push((held_out, strengths.clone(), products.clone()));
+            list.with_background.push((held_out, strengths.clone(), products.clone()));
         });
         products
     }

@@ -17,21 +17,12 @@ impl Study {
     /// A search that takes one effect after the other finds that friction that differs between the recordings of all joints explains
     /// more than the change of any one joint, and then leaves nothing to the others.
     pub fn with_friction_that_changed(&mut self, selected: Selection) -> Selection {
-        let changed: Vec<usize> = self
-            .allowed()
-            .into_iter()
-            .filter(|&c| self.is_changed_friction(c))
-            .collect();
+        let changed: Vec<usize> = self.allowed().into_iter().filter(|&c| self.is_changed_friction(c)).collect();
         if changed.is_empty() || self.strengths.friction == 0.0 {
             return selected;
         }
         let before = self.strengths.clone();
-        let others: Vec<usize> = selected
-            .set
-            .iter()
-            .copied()
-            .filter(|&c| !self.is_changed_friction(c))
-            .collect();
+        let others: Vec<usize> = selected.set.iter().copied().filter(|&c| !self.is_changed_friction(c)).collect();
         self.strengths.friction = 0.0;
         let products = self.training_products();
         let problem = self.problem(&products);
@@ -49,14 +40,9 @@ impl Study {
                     && (candidate.hypothesis, candidate.joint) == (this.hypothesis, this.joint)
             })
         };
-        let of_sign = since
-            .iter()
-            .filter_map(|&c| if is_more(c) { Some(c) } else { until(c) });
+        let of_sign = since.iter().filter_map(|&c| if is_more(c) { Some(c) } else { until(c) });
         let set: Vec<usize> = others.into_iter().chain(of_sign).collect();
-        let beside = STRENGTHS.map(|friction| Strengths {
-            friction,
-            ..self.strengths.clone()
-        });
+        let beside = STRENGTHS.map(|friction| Strengths { friction, ..self.strengths.clone() });
         let trials = beside.map(|strengths| {
             let products = self.products_at(&strengths);
             let problem = self.problem(&products);
@@ -72,10 +58,8 @@ impl Study {
         let changed = together.set.iter().copied().filter(|&c| self.is_changed_friction(c));
         let joints: BTreeSet<Option<usize>> = changed.map(|c| self.candidates[c].joint).collect();
         // By chance, some joints differ more from one side to the other than between recordings of one side.
-        let are_most = 2 * joints.len()
-            > (0..self.data.arm.dof())
-                .filter(|&joint| self.data.scales.moves(joint))
-                .count();
+        let are_most =
+            2 * joints.len() > (0..self.data.arm.dof()).filter(|&joint| self.data.scales.moves(joint)).count();
         if are_most && together.score < selected.score {
             self.note("friction of the joints changed together", &selected, &together);
             return together;

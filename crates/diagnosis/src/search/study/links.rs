@@ -17,15 +17,10 @@ impl Study {
     /// The loss of score of `selected` (nats) if torque constants deviate in the place of `link`, and `link` differs from the URDF no more
     /// than most links. Without a link, no link differs from the URDF.
     pub fn in_torque_constants(&self, selected: &Selection, link: Option<usize>) -> f64 {
-        let without = link.map_or_else(
-            || self.strengths.with_exact_links(),
-            |link| self.strengths.with_link_as_most(link),
-        );
+        let without =
+            link.map_or_else(|| self.strengths.with_exact_links(), |link| self.strengths.with_link_as_most(link));
         let loss = |gain: f64| {
-            let strengths = Strengths {
-                gain,
-                ..without.clone()
-            };
+            let strengths = Strengths { gain, ..without.clone() };
             let products = self.products_at(&strengths);
             let problem = self.problem(&products);
             let next = problem.choose(selected.set.clone(), &selected.fit.weights);
@@ -47,10 +42,7 @@ impl Study {
                 let mut strengths = self.strengths.with_link_as_most(link);
                 strengths.links[other] = self.strengths.of_link(link);
                 let (_, instead) = self.beside(selected, &strengths);
-                (
-                    other,
-                    [instead.score - selected.score, instead.fit.loss - selected.fit.loss],
-                )
+                (other, [instead.score - selected.score, instead.fit.loss - selected.fit.loss])
             })
             .collect()
     }

@@ -31,10 +31,7 @@ impl Study {
         };
         let dropped = before.set.iter().filter(|c| !after.set.contains(c));
         let taken = after.set.iter().filter(|c| !before.set.contains(c));
-        let rows: Vec<_> = dropped
-            .map(row(Action::Dropped))
-            .chain(taken.map(row(Action::Taken)))
-            .collect();
+        let rows: Vec<_> = dropped.map(row(Action::Dropped)).chain(taken.map(row(Action::Taken))).collect();
         if !rows.is_empty() {
             self.trace.step(rows);
         }

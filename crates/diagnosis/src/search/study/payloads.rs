@@ -89,11 +89,7 @@ impl Study {
         let rest = selected.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
         let products = self.training_products();
         let next = self.problem(&products).choose(rest, &selected.fit.weights);
-        self.note(
-            "the last joints hardly feel it, so that a link may carry it",
-            &selected,
-            &next,
-        );
+        self.note("the last joints hardly feel it, so that a link may carry it", &selected, &next);
         let next = self.with_best_strengths(next);
         let allowed = self.allowed();
         let next = self.grown(next, &allowed);
@@ -111,8 +107,7 @@ impl Study {
     pub fn are_felt_at_the_end(&self, columns: &[usize], values: &[f64]) -> bool {
         let share = |joint: usize| {
             let torque = self.table.torque(joint, columns, values);
-            self.data
-                .share(joint, self.table.spread(joint, &self.data.fitted, &torque))
+            self.data.share(joint, self.table.spread(joint, &self.data.fitted, &torque))
         };
         let shares: Vec<f64> = (0..self.data.arm.dof()).map(share).collect();
         let most = |shares: &[f64]| shares.iter().fold(0.0, |most: f64, &share| most.max(share));

@@ -30,12 +30,7 @@ pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
             let fitted = !motions.sources[chunk.recording].held_out;
             fitted && chunk.qd[joint].iter().any(|qd| qd.abs() > MOVED * scales.rest[joint])
         };
-        let mut list: Vec<usize> = motions
-            .chunks
-            .iter()
-            .filter(moves)
-            .map(|chunk| chunk.recording)
-            .collect();
+        let mut list: Vec<usize> = motions.chunks.iter().filter(moves).map(|chunk| chunk.recording).collect();
         list.dedup();
         list
     };
@@ -66,23 +61,15 @@ impl Study {
     /// The products and the fit of `selected` beside a background of these strengths.
     pub(super) fn beside(&self, selected: &Selection, strengths: &Strengths) -> (Products, Selection) {
         let products = self.products_at(strengths);
-        let next = self
-            .problem(&products)
-            .choose(selected.set.clone(), &selected.fit.weights);
+        let next = self.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
         (products, next)
     }
 
     /// `selected` beside the present background, and beside those in which all links may differ from the URDF by more.
     pub fn with_stronger_links(&self, selected: &Selection) -> Vec<(Products, Selection)> {
         let stronger = LINK_STRENGTHS.into_iter().filter(|&rho| rho > self.strengths.common());
-        let all = stronger
-            .map(|rho| self.strengths.at_least(rho))
-            .filter(|strengths| self.stated.allows(strengths));
-        [self.strengths.clone()]
-            .into_iter()
-            .chain(all)
-            .map(|strengths| self.beside(selected, &strengths))
-            .collect()
+        let all = stronger.map(|rho| self.strengths.at_least(rho)).filter(|strengths| self.stated.allows(strengths));
+        [self.strengths.clone()].into_iter().chain(all).map(|strengths| self.beside(selected, &strengths)).collect()
     }
 
     /// The best strengths of a background without the other members of `set`, among those that are stronger somewhere than the
@@ -97,11 +84,7 @@ impl Study {
                 && pairs.clone().all(|(new, old)| new >= old)
                 && pairs.clone().any(|(new, old)| new > old)
         };
-        let all = self
-            .strengths
-            .neighbours()
-            .into_iter()
-            .chain(self.strengths.with_other_links());
+        let all = self.strengths.neighbours().into_iter().chain(self.strengths.with_other_links());
         let trials: Vec<Strengths> = all.filter(stronger).filter(|trial| self.stated.allows(trial)).collect();
         trials
             .into_par_iter()
@@ -139,9 +122,7 @@ impl Study {
             (strengths, next)
         };
         let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
-        let mut nearly = strongest_first
-            .map(at_least)
-            .filter(|(_, next)| next.score < selected.score + margin);
+        let mut nearly = strongest_first.map(at_least).filter(|(_, next)| next.score < selected.score + margin);
         if are_few {
             // So wide a margin holds links that nobody would expect.
             nearly.min_by(|a, b| a.1.score.total_cmp(&b.1.score))
@@ -261,9 +242,7 @@ impl Study {
                 Strengths::with_other_offsets,
                 Strengths::finer,
             ];
-            let next = kinds
-                .into_iter()
-                .find_map(|others| self.strengthened(&selected, others(&self.strengths)));
+            let next = kinds.into_iter().find_map(|others| self.strengthened(&selected, others(&self.strengths)));
             match next {
                 Some((strengths, next)) => {
                     self.strengths = strengths;
@@ -354,11 +333,7 @@ impl Study {
                 let problem = self.problem(&products);
                 let next = problem.choose(selected.set.clone(), &selected.fit.weights);
                 // Without a background, the weights may be far from the final ones.
-                let next = if self.strengths.is_none() {
-                    problem.reweighted(next)
-                } else {
-                    next
-                };
+                let next = if self.strengths.is_none() { problem.reweighted(next) } else { next };
                 (strengths, next)
             })
             .filter(|(_, next)| self.has_short_lag(&next.fit))
@@ -384,17 +359,13 @@ impl Study {
                 let column = self.torque_constant(joint)?;
                 Some((selected.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
             };
-            let farthest = (0..self.data.motions.dof)
-                .filter_map(deviation)
-                .max_by(|a, b| a.0.total_cmp(&b.0));
+            let farthest = (0..self.data.motions.dof).filter_map(deviation).max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, joint)) = farthest else {
                 return (strengths, selected);
             };
             strengths.impossible_constants.push(joint);
             let products = self.products_at(&strengths);
-            selected = self
-                .problem(&products)
-                .choose(selected.set.clone(), &selected.fit.weights);
+            selected = self.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
         }
     }
 }

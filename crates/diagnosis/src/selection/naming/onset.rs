@@ -23,11 +23,7 @@ impl Reader<'_> {
     /// Records the start of a contact of a `duration` (s).
     pub(super) fn note_start(&mut self, start: f64, duration: f64) {
         let half = PUSH_START * duration;
-        let parameter = Parameter {
-            value: start,
-            ci95: [start - half, start + half],
-            unit: "s",
-        };
+        let parameter = Parameter { value: start, ci95: [start - half, start + half], unit: "s" };
         self.parameters.insert("start", parameter);
     }
 
@@ -83,19 +79,13 @@ impl Reader<'_> {
             misfit[k + 1] = misfit[k] + growth(rows[k], 1.0);
         }
         let inner = 1..rows.len().max(2);
-        let best = inner
-            .clone()
-            .min_by(|&a, &b| misfit[a].total_cmp(&misfit[b]))
-            .unwrap_or(now);
+        let best = inner.clone().min_by(|&a, &b| misfit[a].total_cmp(&misfit[b])).unwrap_or(now);
         let is_near = |k: &usize| misfit[*k] < misfit[best] + ONSET_INTERVAL;
         let first = (1..=best).rev().take_while(is_near).last().unwrap_or(best);
         let last = (best..rows.len()).take_while(is_near).last().unwrap_or(best);
         let time = |k: usize| rows.get(k).map_or(near, |&row| times[row]);
         let likeliest = if best == now { near } else { time(best) };
-        (
-            likeliest,
-            [time(first.saturating_sub(1)).min(likeliest), time(last).max(likeliest)],
-        )
+        (likeliest, [time(first.saturating_sub(1)).min(likeliest), time(last).max(likeliest)])
     }
 }
 
@@ -114,12 +104,9 @@ mod tests {
     #[test]
     fn an_onset_between_recordings_is_located_and_one_at_any_row_is_not() {
         let times: Vec<f64> = (0..100).chain(3700..3800).map(f64::from).collect();
-        for (onset, anywhere) in [
-            ([98.0, 3701.0], false),
-            ([0.0, 90.0], false),
-            ([0.0, 3799.0], true),
-            ([0.2, 3703.0], true),
-        ] {
+        for (onset, anywhere) in
+            [([98.0, 3701.0], false), ([0.0, 90.0], false), ([0.0, 3799.0], true), ([0.2, 3703.0], true)]
+        {
             assert_eq!(is_anywhere(onset, &times), anywhere, "{onset:?}");
         }
     }

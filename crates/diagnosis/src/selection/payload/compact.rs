@@ -29,11 +29,7 @@ pub fn with_drives(study: &Study, selected: Selection) -> Selection {
     if !selected.set.iter().any(is_drive) && of_gyration < LARGEST_BODY {
         return selected;
     }
-    let set: Vec<usize> = selected
-        .set
-        .iter()
-        .map(|&c| if c == payload { small } else { c })
-        .collect();
+    let set: Vec<usize> = selected.set.iter().map(|&c| if c == payload { small } else { c }).collect();
     let next = problem.forward(problem.choose(set, &selected.fit.weights), &drives);
     if next.score < selected.score && problem.is_possible(small, &next.fit) {
         study.note("a small body and drives explain as much", &selected, &next);

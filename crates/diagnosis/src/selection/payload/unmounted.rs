@@ -108,10 +108,7 @@ fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: us
         let is_possible = !set.contains(&body) || problem.is_possible(body, &next.fit);
         (next, is_possible)
     };
-    let exact = Strengths {
-        links: vec![0.0; study.data.arm.dof()],
-        ..study.strengths.clone()
-    };
+    let exact = Strengths { links: vec![0.0; study.data.arm.dof()], ..study.strengths.clone() };
     let (bare, _) = fit(&exact, &others);
     let (alone, _) = fit(&exact, &with);
     let explained = bare.score - selected.score;
@@ -129,16 +126,10 @@ fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: us
         })
         .min_by(|a, b| a.0.0.score.total_cmp(&b.0.0.score))?;
     let (most, rule) = match lighter {
-        _ if is_nearly_all => (
-            allowance(explained),
-            "one missing body explains nearly as much as the background",
-        ),
+        _ if is_nearly_all => (allowance(explained), "one missing body explains nearly as much as the background"),
         // A missing tool is likelier than a last link that is lighter by as much.
         Some(_) => (UNDECIDED_NATS, "a missing body explains as much as a lighter last link"),
-        None => (
-            -LEAST_BESIDE_SOME_LINKS,
-            "a missing body explains more than the last link's background",
-        ),
+        None => (-LEAST_BESIDE_SOME_LINKS, "a missing body explains more than the last link's background"),
     };
     if next.score - selected.score > most {
         return None;

@@ -28,10 +28,5 @@ pub fn without_moment(study: &Study, judged: &Judged, resampled: &Resampled) -> 
             && moments.is_some_and(|moments| moments.iter().all(|&column| may_be_zero(column)))
     };
     let is_wrong = study.strengths.common() > 0.0;
-    judged
-        .named
-        .set
-        .iter()
-        .copied()
-        .find(|c| is_wrong && is_without_moment(c))
+    judged.named.set.iter().copied().find(|c| is_wrong && is_without_moment(c))
 }

@@ -27,49 +27,23 @@ fn a_saved_model_is_the_same() {
             (mean, variance, share)
         };
         assert_eq!(of(&gp), of(&read));
-        assert_eq!(
-            (gp.prior(), gp.noise(), gp.conditioning()),
-            (read.prior(), read.noise(), read.conditioning())
-        );
+        assert_eq!((gp.prior(), gp.noise(), gp.conditioning()), (read.prior(), read.noise(), read.conditioning()));
         assert_eq!(gp.log_marginal_likelihood(), read.log_marginal_likelihood());
     }
     let text = std::fs::read_to_string(&path).expect("it is there");
     for (from, to, expected) in [
-        (
-            "testbed.lagrangian/1",
-            "testbed.lagrangian/2",
-            "expected \"testbed.lagrangian/1\"",
-        ),
+        ("testbed.lagrangian/1", "testbed.lagrangian/2", "expected \"testbed.lagrangian/1\""),
         ("\"noise\":[0.0,", "\"noise\":[", "noise has 3 entries, expected 4"),
-        (
-            "\"kinetic\":[0.0,",
-            "\"kinetic\":[-1.0,",
-            "kinetic is -1: it must be finite and not negative",
-        ),
-        (
-            "\"potential\":[0.0,",
-            "\"potential\":[",
-            "potential has 3 entries, expected 4",
-        ),
-        (
-            "\"weights\":[0.0,",
-            "\"weights\":[",
-            "4 motions and 3 weights of 4 joints",
-        ),
+        ("\"kinetic\":[0.0,", "\"kinetic\":[-1.0,", "kinetic is -1: it must be finite and not negative"),
+        ("\"potential\":[0.0,", "\"potential\":[", "potential has 3 entries, expected 4"),
+        ("\"weights\":[0.0,", "\"weights\":[", "4 motions and 3 weights of 4 joints"),
         ("\"units\":[1.0,", "\"units\":[0.0,", "units has the entry 0"),
-        (
-            "\"projected\":null",
-            "\"projected\":null,\"more\":1",
-            "unknown field `more`",
-        ),
+        ("\"projected\":null", "\"projected\":null,\"more\":1", "unknown field `more`"),
     ] {
         assert!(text.contains(from), "no {from} in {text}");
         std::fs::write(&path, text.replacen(from, to, 1)).expect("it can be written");
         let message = LagrangianGp::load(&path).expect_err("it is refused").to_string();
-        assert!(
-            message.contains(expected) && message.contains("model.json"),
-            "{message}"
-        );
+        assert!(message.contains(expected) && message.contains("model.json"), "{message}");
     }
     let missing = LagrangianGp::load(folder.path().join("none.json")).expect_err("it is refused");
     assert!(matches!(missing, GpError::File { .. }));

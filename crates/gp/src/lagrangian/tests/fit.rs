@@ -39,10 +39,7 @@ pub(super) fn pendulum(count: usize, hertz: f64, friction: f64, noise: f64) -> T
 }
 
 pub(super) fn options(support: usize) -> LagrangianOptions {
-    LagrangianOptions {
-        support,
-        ..LagrangianOptions::default()
-    }
+    LagrangianOptions { support, ..LagrangianOptions::default() }
 }
 
 /// The RMS error of each joint's torque on `tests`, as a part of the RMS torque.
@@ -59,11 +56,7 @@ fn errors(gp: &LagrangianGp, tests: &TorqueSamples) -> Vec<f64> {
         }
     }
     let unit = |joint: usize| tests.root_mean_square(3, joint);
-    squares
-        .iter()
-        .enumerate()
-        .map(|(joint, square)| square.sqrt() / unit(joint))
-        .collect()
+    squares.iter().enumerate().map(|(joint, square)| square.sqrt() / unit(joint)).collect()
 }
 
 #[test]
@@ -85,11 +78,7 @@ fn the_likelihoods_gradient_is_that_of_differences() {
             objective.value(&free)
         };
         let difference = (moved(1e-4) - moved(-1e-4)) / 2e-4;
-        assert!(
-            (gradient[at] - difference).abs() < 1e-6 * largest,
-            "{at}: {} {difference}",
-            gradient[at]
-        );
+        assert!((gradient[at] - difference).abs() < 1e-6 * largest, "{at}: {} {difference}", gradient[at]);
     }
 }
 
@@ -138,11 +127,7 @@ fn units_of_torque_are_of_no_account() {
         gp.mean(motion, &mut gp.workspace(), &mut torques);
         torques
     };
-    assert!(
-        errors(&gp, &pendulum(50, 0.2, 0.0, 0.0))
-            .iter()
-            .all(|error| *error < 1e-5)
-    );
+    assert!(errors(&gp, &pendulum(50, 0.2, 0.0, 0.0)).iter().all(|error| *error < 1e-5));
     for factor in [4.0, 1000.0 / 3.0, 1e-6] {
         for (one, other) in mean(&gp).into_iter().zip(mean(&scaled(factor))) {
             assert!((one * factor / other - 1.0).abs() < 1e-5, "{factor}: {one} {other}");
@@ -173,10 +158,7 @@ fn the_posterior_is_that_of_the_dense_formulas() {
         let mut workspace = gp.workspace();
         let typical = |joint: usize| {
             let k = matrix(gp.prior(), &ones, &motions);
-            (0..40)
-                .map(|at| k[(motions.entry(at, joint), motions.entry(at, joint))])
-                .sum::<f64>()
-                / 40.0
+            (0..40).map(|at| k[(motions.entry(at, joint), motions.entry(at, joint))]).sum::<f64>() / 40.0
         };
         for speed in [1.0, 3.0, 30.0] {
             let (q, qd, qdd) = ([0.5, 2.0], [0.8 * speed, 0.1], [1.0, -speed]);
@@ -201,10 +183,7 @@ fn the_posterior_is_that_of_the_dense_formulas() {
             for joint in 0..2 {
                 let whole = own[(joint, joint)];
                 let exact = whole - known[(joint, joint)];
-                assert!(
-                    (torques[joint] - mean[(joint, 0)]).abs() < 1e-5 * whole.sqrt(),
-                    "{noise} {speed}"
-                );
+                assert!((torques[joint] - mean[(joint, 0)]).abs() < 1e-5 * whole.sqrt(), "{noise} {speed}");
                 assert!(
                     (variances[joint] - exact).abs() < 1e-9 * whole + 1e-4 * exact,
                     "{noise} {speed} {joint}: {} {exact}",
@@ -212,10 +191,7 @@ fn the_posterior_is_that_of_the_dense_formulas() {
                 );
                 let share = range.variance_share(joint, &mut workspace);
                 let exact_share = exact / whole.max(typical(joint));
-                assert!(
-                    share > exact_share * (1.0 - 1e-3) - 1e-9 && share <= 1.0,
-                    "{share} {exact_share}"
-                );
+                assert!(share > exact_share * (1.0 - 1e-3) - 1e-9 && share <= 1.0, "{share} {exact_share}");
             }
         }
         assert!((0..2).all(|joint| range.mean_variance_share(joint) < 0.05), "{range:?}");
@@ -279,44 +255,28 @@ fn what_cannot_be_learned_is_refused() {
     let new = |values: [&[f64]; 4]| TorqueSamples::new(&JOINTS[..2], [values[0], values[1], values[2]], values[3]);
     let two: &[f64] = &[0.0, 1.0];
     assert!(matches!(new([&[]; 4]), Err(GpError::Empty { samples: 0, dim: 6 })));
-    assert!(matches!(
-        new([two, two, &[0.0], two]),
-        Err(GpError::Shape { values: 1, .. })
-    ));
+    assert!(matches!(new([two, two, &[0.0], two]), Err(GpError::Shape { values: 1, .. })));
     let bad = new([two, two, &[0.0, f64::NAN], two]);
     assert!(matches!(bad, Err(GpError::Input { row: 0, column: 5, .. })));
     let bad = new([two, two, two, &[f64::INFINITY, 0.0]]);
     assert!(matches!(bad, Err(GpError::Target { row: 0, .. })));
     let samples = pendulum(10, 0.3, 0.0, 0.0);
-    let none = LagrangianOptions {
-        starts: 0,
-        ..LagrangianOptions::default()
-    };
-    let message = LagrangianGp::fit(&samples, &none)
-        .expect_err("it is refused")
-        .to_string();
+    let none = LagrangianOptions { starts: 0, ..LagrangianOptions::default() };
+    let message = LagrangianGp::fit(&samples, &none).expect_err("it is refused").to_string();
     assert_eq!(message, "starts is 0: it must be at least 1");
 }
 
 /// A workspace may be used with one model after the other, also where positions have other scales or joints are fewer.
 #[test]
 fn workspaces_can_be_shared() {
-    let options = LagrangianOptions {
-        starts: 1,
-        max_iterations: 5,
-        ..options(20)
-    };
+    let options = LagrangianOptions { starts: 1, max_iterations: 5, ..options(20) };
     let fit = |samples: &TorqueSamples| LagrangianGp::fit(samples, &options).expect("it fits");
     let wide = {
         let mut samples = samples(&JOINTS, 20);
         samples.values[0].iter_mut().for_each(|q| *q *= 3.0);
         samples
     };
-    let models = [
-        fit(&samples(&JOINTS, 20)),
-        fit(&wide),
-        fit(&pendulum(20, 0.3, 0.0, 0.0)),
-    ];
+    let models = [fit(&samples(&JOINTS, 20)), fit(&wide), fit(&pendulum(20, 0.3, 0.0, 0.0))];
     let mut shared = models[0].workspace();
     for gp in models.iter().chain(&models) {
         let dof = gp.dof();

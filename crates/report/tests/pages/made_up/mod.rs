@@ -26,11 +26,7 @@ pub enum Plot {
 }
 
 fn parameter(value: f64, half: f64, unit: &'static str) -> Parameter {
-    Parameter {
-        value,
-        ci95: [value - half, value + half],
-        unit,
-    }
+    Parameter { value, ci95: [value - half, value + half], unit }
 }
 
 /// The report, what its figures are drawn from, and the arm.
@@ -38,10 +34,8 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
     let arm = arm(joints);
     let name = |joint: usize| arm.joints()[joint].name.clone();
     let rich = plot == Plot::Rich;
-    let found: Vec<Row> = EFFECTS
-        .into_iter()
-        .filter(|row| rich && row.1.map_or(joints > 1, |joint| joint < joints))
-        .collect();
+    let found: Vec<Row> =
+        EFFECTS.into_iter().filter(|row| rich && row.1.map_or(joints > 1, |joint| joint < joints)).collect();
     let traces = Traces {
         recordings: vec![
             trace("recordings/a_sines.csv", 0.0, false, joints, &found, rich),
@@ -69,33 +63,19 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             effect: row.0,
             joint: joint.clone(),
             other: None,
-            parameters: row
-                .2
-                .iter()
-                .map(|&(key, value, half, unit)| (key, parameter(value, half, unit)))
-                .collect(),
+            parameters: row.2.iter().map(|&(key, value, half, unit)| (key, parameter(value, half, unit))).collect(),
             probability: Some(0.999 - 0.03 * f as f64),
             share: shares.values().copied().fold(0.0, f64::max),
             share_by_joint: shares,
             held_out_gain: Some(0.6 / (1.0 + f as f64)),
             confusable_with_pairs: Vec::new(),
             confusable_with: match row.0 {
-                "spring" => vec![Confusable {
-                    effect: "payload",
-                    joint: None,
-                }],
-                "coulomb_friction" => vec![Confusable {
-                    effect: "friction_asymmetry",
-                    joint: joint.clone(),
-                }],
+                "spring" => vec![Confusable { effect: "payload", joint: None }],
+                "coulomb_friction" => vec![Confusable { effect: "friction_asymmetry", joint: joint.clone() }],
                 _ => Vec::new(),
             },
             place: Place {
-                time: if row.0 == "external_contact" {
-                    vec![[11.2, 12.8]]
-                } else {
-                    Vec::new()
-                },
+                time: if row.0 == "external_contact" { vec![[11.2, 12.8]] } else { Vec::new() },
                 recording: None,
                 state: (row.0 == "coulomb_friction").then(|| "within 0.05 rad/s of a reversal".into()),
             },
@@ -113,10 +93,8 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
     });
     let mut findings: Vec<Finding> = findings.collect();
     findings.sort_by(|a, b| b.share.total_cmp(&a.share));
-    let order: Vec<usize> = findings
-        .iter()
-        .map(|finding| found.iter().position(|row| row.0 == finding.effect).expect("a row"))
-        .collect();
+    let order: Vec<usize> =
+        findings.iter().map(|finding| found.iter().position(|row| row.0 == finding.effect).expect("a row")).collect();
     let mut traces = traces;
     for trace in &mut traces.recordings {
         trace.effects = order.iter().map(|&f| trace.effects[f].clone()).collect();
@@ -149,10 +127,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 share: 0.17,
                 depends_on: vec![
                     Regressor::OwnPosition.into(),
-                    Dependence {
-                        on: Regressor::OtherJoint,
-                        joint: Some(name(0)),
-                    },
+                    Dependence { on: Regressor::OtherJoint, joint: Some(name(0)) },
                 ],
                 time: Vec::new(),
                 next: "Sweep this joint alone, slowly, over its range in both directions, twice.".into(),
@@ -176,24 +151,10 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
                 over_noise: 31.0 / (1 + j) as f64,
                 repeatable: (j != 2).then_some(0.97 - 0.05 * j as f64),
                 regions: vec![
-                    Region {
-                        axis: Axis::Angle,
-                        range: [-1.9, -0.8],
-                        residual: 0.71,
-                        residual_augmented: 0.05,
-                    },
-                    Region {
-                        axis: Axis::NearReversal,
-                        range: [0.0, 0.05],
-                        residual: 0.42,
-                        residual_augmented: 0.08,
-                    },
+                    Region { axis: Axis::Angle, range: [-1.9, -0.8], residual: 0.71, residual_augmented: 0.05 },
+                    Region { axis: Axis::NearReversal, range: [0.0, 0.05], residual: 0.42, residual_augmented: 0.08 },
                 ],
-                time: vec![TimeWindow {
-                    recording: "recordings/a_sines.csv".into(),
-                    start: 11.2,
-                    end: 12.8,
-                }],
+                time: vec![TimeWindow { recording: "recordings/a_sines.csv".into(), start: 11.2, end: 12.8 }],
             })
             .collect(),
         fit,
@@ -245,12 +206,7 @@ fn not_observable(arm: &Arm) -> Vec<NotObservable> {
         for (effect, key, size, because) in [
             ("backlash", "halfgap", 0.0003, "gravity loads the gear throughout"),
             ("torque_saturation", "limit", 120.0, "the torque stays below its limit"),
-            (
-                "thermal_drift",
-                "time_constant",
-                400.0,
-                "the recordings are short against a drive's warming",
-            ),
+            ("thermal_drift", "time_constant", 400.0, "the recordings are short against a drive's warming"),
         ] {
             unseen.push(NotObservable {
                 effect,

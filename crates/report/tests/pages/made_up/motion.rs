@@ -19,15 +19,7 @@ const NAMES: [&str; 7] = [
 
 /// An arm of `joints` joints, with links in the proportions of a common six-axis arm.
 pub fn arm(joints: usize) -> Arm {
-    let origins = [
-        "0 0 .18",
-        "0 .14 0",
-        "0 -.12 .61",
-        "0 0 .57",
-        "0 .11 0",
-        "0 0 .12",
-        "0 .1 0",
-    ];
+    let origins = ["0 0 .18", "0 .14 0", "0 -.12 .61", "0 0 .57", "0 .11 0", "0 0 .12", "0 .1 0"];
     let axes = ["0 0 1", "0 1 0", "0 1 0", "0 1 0", "0 0 1", "0 1 0", "0 0 1"];
     let mut urdf = String::from("<robot name=\"six & one\"><link name=\"l0\"/>");
     urdf = urdf.replace('&', "&amp;");
@@ -57,10 +49,7 @@ impl Noise {
     fn next(&mut self) -> f64 {
         let mut sum = -3.0;
         for _ in 0..6 {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             sum += (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
         }
         sum
@@ -69,58 +58,27 @@ impl Noise {
 
 /// An effect's name, its joint, its parameters, and its torque at (time, joint, q, q̇, q̈, nominal torque).
 type Torque = fn(f64, usize, &[f64], &[f64], &[f64], f64) -> f64;
-pub type Row = (
-    &'static str,
-    Option<usize>,
-    &'static [(&'static str, f64, f64, &'static str)],
-    Torque,
-);
+pub type Row = (&'static str, Option<usize>, &'static [(&'static str, f64, f64, &'static str)], Torque);
 
 pub const EFFECTS: [Row; 8] = [
-    (
-        "spring",
-        Some(1),
-        &[("stiffness", 62.0, 3.1, "N m/rad"), ("rest", -1.66, 0.02, "rad")],
-        |_, _, q, _, _, _| 62.0 * (q[1] + 1.66),
-    ),
-    (
-        "coulomb_friction",
-        Some(0),
-        &[("level", 9.3, 0.25, "N m")],
-        |_, _, _, v, _, _| 9.3 * (v[0] / 0.01).tanh(),
-    ),
-    (
-        "viscous_friction",
-        Some(0),
-        &[("coefficient", 4.2, 0.4, "N m s/rad")],
-        |_, _, _, v, _, _| 4.2 * v[0],
-    ),
+    ("spring", Some(1), &[("stiffness", 62.0, 3.1, "N m/rad"), ("rest", -1.66, 0.02, "rad")], |_, _, q, _, _, _| {
+        62.0 * (q[1] + 1.66)
+    }),
+    ("coulomb_friction", Some(0), &[("level", 9.3, 0.25, "N m")], |_, _, _, v, _, _| 9.3 * (v[0] / 0.01).tanh()),
+    ("viscous_friction", Some(0), &[("coefficient", 4.2, 0.4, "N m s/rad")], |_, _, _, v, _, _| 4.2 * v[0]),
     (
         "payload",
         None,
-        &[
-            ("mass", 1.42, 0.06, "kg"),
-            ("com_x", 0.012, 0.004, "m"),
-            ("com_z", 0.083, 0.011, "m"),
-        ],
+        &[("mass", 1.42, 0.06, "kg"), ("com_x", 0.012, 0.004, "m"), ("com_z", 0.083, 0.011, "m")],
         |_, j, q, _, _, _| [0.0, 14.0, 9.0, 3.0, 1.0, 0.2, 0.0][j] * (q.iter().skip(1).take(j).sum::<f64>()).sin(),
     ),
     (
         "torque_ripple",
         Some(2),
-        &[
-            ("amplitude", 3.4, 0.2, "N m"),
-            ("periods", 18.0, 0.05, ""),
-            ("phase", 0.4, 0.1, "rad"),
-        ],
+        &[("amplitude", 3.4, 0.2, "N m"), ("periods", 18.0, 0.05, ""), ("phase", 0.4, 0.1, "rad")],
         |_, _, q, _, _, _| 3.4 * (18.0 * q[2] + 0.4).sin(),
     ),
-    (
-        "rotor_inertia",
-        Some(3),
-        &[("inertia", 0.31, 0.015, "kg m²")],
-        |_, _, _, _, a, _| 0.31 * a[3],
-    ),
+    ("rotor_inertia", Some(3), &[("inertia", 0.31, 0.015, "kg m²")], |_, _, _, _, a, _| 0.31 * a[3]),
     (
         "load_dependent_friction",
         Some(2),
@@ -130,17 +88,9 @@ pub const EFFECTS: [Row; 8] = [
     (
         "external_contact",
         None,
-        &[
-            ("start", 11.2, 0.05, "s"),
-            ("duration", 1.6, 0.1, "s"),
-            ("force", 38.0, 4.0, "N"),
-        ],
+        &[("start", 11.2, 0.05, "s"), ("duration", 1.6, 0.1, "s"), ("force", 38.0, 4.0, "N")],
         |t, j, _, _, _, _| {
-            if (11.2..12.8).contains(&t) {
-                [6.0, 14.0, 9.0, 2.0, 1.0, 0.0, 0.0][j]
-            } else {
-                0.0
-            }
+            if (11.2..12.8).contains(&t) { [6.0, 14.0, 9.0, 2.0, 1.0, 0.0, 0.0][j] } else { 0.0 }
         },
     ),
 ];
@@ -189,23 +139,13 @@ pub fn trace(name: &str, start: f64, held_out: bool, joints: usize, found: &[Row
         };
         let [q, v, a]: [Vec<f64>; 3] = std::array::from_fn(|d| {
             (0..joints)
-                .map(|j| {
-                    if rests && d > 0 {
-                        0.0
-                    } else {
-                        wave(j, d) + if d == 0 && j == 1 { -0.9 } else { 0.0 }
-                    }
-                })
+                .map(|j| if rests && d > 0 { 0.0 } else { wave(j, d) + if d == 0 && j == 1 { -0.9 } else { 0.0 } })
                 .collect()
         });
         for j in 0..joints {
             let size = 60.0 / (1 + j * j) as f64;
             let nominal = size * (q[j.min(1)] + 0.3).sin() + 0.1 * size * a[j];
-            let unnamed = if rich && j == 4 {
-                0.25 * size * (3.0 * wave(4, 0)).sin()
-            } else {
-                0.0
-            };
+            let unnamed = if rich && j == 4 { 0.25 * size * (3.0 * wave(4, 0)).sin() } else { 0.0 };
             let left = 0.03 * size * noise.next() + unnamed;
             let mut named = 0.0;
             for (f, row) in found.iter().enumerate().filter(|(_, row)| acts(row, j, joints)) {

@@ -17,14 +17,8 @@ const ORANGE: [u8; 3] = [240, 140, 74];
 const BLUE: [u8; 3] = [88, 170, 240];
 const GREY: [u8; 3] = [170, 178, 188];
 /// Effects of one joint in turn.
-const EFFECTS: [[u8; 3]; 6] = [
-    [242, 196, 65],
-    [96, 190, 120],
-    [176, 132, 224],
-    [232, 98, 88],
-    [90, 200, 200],
-    [230, 150, 190],
-];
+const EFFECTS: [[u8; 3]; 6] =
+    [[242, 196, 65], [96, 190, 120], [176, 132, 224], [232, 98, 88], [90, 200, 200], [230, 150, 190]];
 
 /// Entities under a joint's, their names in the legend, colours and widths; the first of a plot lies under the others.
 const LINES: [(&str, &str, [u8; 3], f32); 5] = [
@@ -49,10 +43,7 @@ fn acts(report: &Report, number: usize, joint: &str) -> bool {
 /// Logs names, colours and widths of all lines.
 pub fn log_styles(recording: &RecordingStream, arm: &Arm, report: &Report) -> RecordingStreamResult<()> {
     let style = |name: &str, [r, g, b]: [u8; 3], width: f32| {
-        SeriesLines::new()
-            .with_names([name])
-            .with_colors([Color::from_rgb(r, g, b)])
-            .with_widths([width])
+        SeriesLines::new().with_names([name]).with_colors([Color::from_rgb(r, g, b)]).with_widths([width])
     };
     for joint in arm.joints() {
         let entity = |part: &str| joint_entity(&joint.name).join(&EntityPath::from(part));
@@ -79,49 +70,18 @@ fn write(layout: &mut Layout<'_>, arm: &Arm, report: &Report, span: [f64; 2]) ->
     let title = format!("{}: recorded motion, coloured by the residual", arm.name());
     let scene = layout.scene(arm, &title, 0.7)?;
     let summary = layout.view("TextDocument", "Diagnosis", SUMMARY, &[])?;
-    let left = layout.container(ContainerKind::Vertical, &[scene, summary], |c| {
-        c.with_row_shares([0.5, 0.5])
-    })?;
+    let left = layout.container(ContainerKind::Vertical, &[scene, summary], |c| c.with_row_shares([0.5, 0.5]))?;
     let has_effects = |joint: &str| (0..report.findings.len()).any(|number| acts(report, number, joint));
     let mut tabs = vec![
-        grid(
-            layout,
-            arm,
-            &Tab {
-                title: "Residual",
-                part: "residual",
-                span,
-            },
-            &|_| true,
-        )?,
-        grid(
-            layout,
-            arm,
-            &Tab {
-                title: "Torque",
-                part: "torque",
-                span,
-            },
-            &|_| true,
-        )?,
+        grid(layout, arm, &Tab { title: "Residual", part: "residual", span }, &|_| true)?,
+        grid(layout, arm, &Tab { title: "Torque", part: "torque", span }, &|_| true)?,
     ];
     if !report.findings.is_empty() {
-        tabs.push(grid(
-            layout,
-            arm,
-            &Tab {
-                title: "Effects",
-                part: "effect",
-                span,
-            },
-            &has_effects,
-        )?);
+        tabs.push(grid(layout, arm, &Tab { title: "Effects", part: "effect", span }, &has_effects)?);
     }
     let first = tabs[0].path.clone();
     let tabs = layout.container(ContainerKind::Tabs, &tabs, |c| c.with_active_tab(first.as_str()))?;
-    layout.container(ContainerKind::Horizontal, &[left, tabs], |c| {
-        c.with_col_shares([0.4, 0.6])
-    })
+    layout.container(ContainerKind::Horizontal, &[left, tabs], |c| c.with_col_shares([0.4, 0.6]))
 }
 
 /// A tab: its title, the entity under the joint's, the time it shows.
@@ -133,9 +93,7 @@ struct Tab {
 
 /// One plot per joint.
 fn grid(layout: &mut Layout<'_>, arm: &Arm, tab: &Tab, is_shown: &dyn Fn(&str) -> bool) -> RecordingStreamResult<Node> {
-    let [start, end] = tab
-        .span
-        .map(|time| TimeRangeBoundary::Absolute(TimeInt((1e9 * time) as i64)));
+    let [start, end] = tab.span.map(|time| TimeRangeBoundary::Absolute(TimeInt((1e9 * time) as i64)));
     let axis = TimeAxis::new().with_view_range(TimeRange { start, end });
     let mut plots = Vec::new();
     for joint in arm.joints().iter().filter(|joint| is_shown(&joint.name)) {
@@ -147,7 +105,5 @@ fn grid(layout: &mut Layout<'_>, arm: &Arm, tab: &Tab, is_shown: &dyn Fn(&str) -
         plots.push(layout.view("TimeSeries", &name, &origin.to_string(), &properties)?);
     }
     let columns = if plots.len() > 1 { 2 } else { 1 };
-    layout.container(ContainerKind::Grid, &plots, |c| {
-        c.with_grid_columns(columns).with_display_name(tab.title)
-    })
+    layout.container(ContainerKind::Grid, &plots, |c| c.with_grid_columns(columns).with_display_name(tab.title))
 }

@@ -44,9 +44,7 @@ pub fn blocks(of: &Disturbance) -> Vec<Block> {
 
 fn found(of: &Disturbance) -> String {
     let list = |effects: &[NamedEffect]| {
-        let words = effects
-            .iter()
-            .map(|effect| name(&(effect.effect.clone(), effect.joint.clone())));
+        let words = effects.iter().map(|effect| name(&(effect.effect.clone(), effect.joint.clone())));
         words.collect::<Vec<_>>().join(", ")
     };
     let mut sentences = vec![match (of.is_one_finding, of.findings.is_empty()) {
@@ -62,14 +60,8 @@ fn found(of: &Disturbance) -> String {
                 .to_owned(),
         );
     } else if !of.findings.is_empty() {
-        let said = if of.aliases.is_empty() {
-            "none".to_owned()
-        } else {
-            list(&of.aliases)
-        };
-        sentences.push(format!(
-            "The alternative that it states is {said}, **not `torque_scale` on every joint**."
-        ));
+        let said = if of.aliases.is_empty() { "none".to_owned() } else { list(&of.aliases) };
+        sentences.push(format!("The alternative that it states is {said}, **not `torque_scale` on every joint**."));
     }
     sentences.join(" ")
 }
@@ -77,11 +69,7 @@ fn found(of: &Disturbance) -> String {
 fn size(factor: &Factor) -> String {
     let bound = |bound: Option<f64>| bound.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
     let [low, high] = factor.ci95.map(bound);
-    let holds = if factor.is_covered {
-        "contains"
-    } else {
-        "**does not contain**"
-    };
+    let holds = if factor.is_covered { "contains" } else { "**does not contain**" };
     format!(
         "The estimated factor of the inertias is {:.6}; the ground truth is {:.6}, and the error is {}. The 95 % interval, {low} to {high}, {holds} the ground truth; \
          its half-width includes two per cent of the value, which every interval allows for filtering and model form errors.",
@@ -122,10 +110,7 @@ pub fn line(of: &Disturbance) -> String {
         .iter()
         .find(|other| other.row.model == ModelKind::IndependentJoint)
         .map_or_else(|| "–".to_owned(), |other| rounded(other.row.mean, 3));
-    let diagnosed = of
-        .diagnosed
-        .as_ref()
-        .map_or_else(|| "–".to_owned(), |errors| rounded(errors.mean, 3));
+    let diagnosed = of.diagnosed.as_ref().map_or_else(|| "–".to_owned(), |errors| rounded(errors.mean, 3));
     let named = match (&of.factor, of.is_one_finding) {
         (Some(factor), true) => format!("{EFFECT} × {:.6} alone (true {:.6})", factor.value, factor.truth),
         _ => format!("{} findings, not {EFFECT} alone", of.findings.len()),

@@ -41,12 +41,7 @@ pub fn numbers(robots: &[Tried]) -> Option<String> {
         svg.text([at, bottom + 16.0], "tick", "middle", &format!("{tick}"));
     }
     let middle = 0.5 * (LEFT + RIGHT);
-    svg.text(
-        [middle, bottom + 34.0],
-        "axis",
-        "middle",
-        "estimated over published value",
-    );
+    svg.text([middle, bottom + 34.0], "axis", "middle", "estimated over published value");
     for (k, (label, evidence, number)) in rows.iter().enumerate() {
         let y = TOP + STEP * (k as f64 + 0.5);
         svg.text([LEFT - 12.0, y + 4.0], "tick", "end", label);
@@ -54,11 +49,7 @@ pub fn numbers(robots: &[Tried]) -> Option<String> {
         if let [Some(low), Some(high)] = number.ci95 {
             svg.line([place(over(low)), y], [place(over(high)), y], "span");
         }
-        let class = if *evidence == Evidence::Constant {
-            "dot-learned"
-        } else {
-            "dot-after"
-        };
+        let class = if *evidence == Evidence::Constant { "dot-learned" } else { "dot-after" };
         svg.circle([place(over(number.found.unwrap_or_default())), y], 4.0, class);
     }
     Some(svg.finish())

@@ -127,11 +127,7 @@ impl File {
             let path = path.display();
             format!("--published {path}: cannot be read; give a file with schema = \"{SCHEMA}\"")
         })?;
-        let source = Source {
-            name: String::new(),
-            path: path.to_owned(),
-            text,
-        };
+        let source = Source { name: String::new(), path: path.to_owned(), text };
         let raw: Raw = toml::from_str(&source.text).map_err(|error| {
             let place = source.place(error.span().unwrap_or(0..0));
             anyhow!("{place}: {}", toml_reason(error.message()))
@@ -172,17 +168,10 @@ impl File {
         }
         let place = source.path.display().to_string();
         ensure_some(&robots, &place, "the list of robots")?;
-        let file = Self {
-            sha256: sha256(source.text.as_bytes()),
-            robots,
-            source,
-        };
+        let file = Self { sha256: sha256(source.text.as_bytes()), robots, source };
         for robot in &file.robots {
             let said = robot.says.iter().map(|says| (says.span(), &says.get_ref().effects));
-            let denied = robot
-                .denies
-                .iter()
-                .map(|denies| (denies.span(), &denies.get_ref().effects));
+            let denied = robot.denies.iter().map(|denies| (denies.span(), &denies.get_ref().effects));
             for (span, effects) in said.chain(denied) {
                 ensure_some(effects, &file.source.place(span), "effects")?;
                 effects.iter().try_for_each(|effect| file.check_effect(effect))?;
@@ -206,11 +195,7 @@ impl File {
                 whole == says.joints.is_empty(),
                 "{place}: {} {}",
                 says.effects[0].get_ref(),
-                if whole {
-                    "is on the whole arm; leave joints out"
-                } else {
-                    "is on a joint; add joints"
-                }
+                if whole { "is on the whole arm; leave joints out" } else { "is on a joint; add joints" }
             );
             let joints: Vec<Option<(String, JointKind)>> = if whole {
                 vec![None]
@@ -238,11 +223,7 @@ impl File {
                 place: denies.place.clone(),
             });
         }
-        Ok(Published {
-            robot: robot.name.clone(),
-            said,
-            denied,
-        })
+        Ok(Published { robot: robot.name.clone(), said, denied })
     }
 
     fn fail(&self, span: Range<usize>, reason: &str) -> anyhow::Error {
@@ -257,10 +238,7 @@ impl File {
         let known: Vec<String> = catalogue().into_iter().map(str::to_owned).collect();
         let hint = nearest(name, &known).map_or(String::new(), |near| format!("did you mean \"{near}\"? "));
         let known = known.join(", ");
-        Err(self.fail(
-            effect.span(),
-            &format!("there is no effect \"{name}\"; {hint}there are {known}"),
-        ))
+        Err(self.fail(effect.span(), &format!("there is no effect \"{name}\"; {hint}there are {known}")))
     }
 
     fn joint(&self, joint: &Spanned<String>, arm: &Arm) -> anyhow::Result<(String, JointKind)> {
@@ -306,13 +284,7 @@ impl File {
                 Err(reason) => bail!(self.fail(numbers.unit.span(), &reason)),
             };
             let value = factor * values[k];
-            list.insert(
-                name.clone(),
-                PublishedNumber {
-                    value,
-                    unit: unit.to_owned(),
-                },
-            );
+            list.insert(name.clone(), PublishedNumber { value, unit: unit.to_owned() });
         }
         Ok(list)
     }
@@ -330,10 +302,7 @@ impl Robot {
                 } else if denies.joints.is_empty() {
                     pairs.extend((0..self.dof).map(|joint| (effect, None, joint)));
                 } else {
-                    let joints = denies
-                        .joints
-                        .iter()
-                        .map(|joint| (effect, Some(joint.get_ref().as_str()), 0));
+                    let joints = denies.joints.iter().map(|joint| (effect, Some(joint.get_ref().as_str()), 0));
                     pairs.extend(joints);
                 }
             }

@@ -23,11 +23,7 @@ pub fn blocks(robots: &[Tried]) -> Vec<Block> {
             .collect()
     });
     let far = each(robots, |tried| {
-        let own = tried
-            .score
-            .said
-            .iter()
-            .filter(|o| o.said.evidence != Evidence::Constant);
+        let own = tried.score.said.iter().filter(|o| o.said.evidence != Evidence::Constant);
         let mut list = Vec::new();
         for outcome in own {
             let said = &outcome.said;
@@ -47,10 +43,7 @@ pub fn blocks(robots: &[Tried]) -> Vec<Block> {
         )));
     }
     if !far.is_empty() {
-        list.push(text(format!(
-            "**Difference of more than {} from the published value.** {far}.",
-            percent(FAR)
-        )));
+        list.push(text(format!("**Difference of more than {} from the published value.** {far}.", percent(FAR))));
     }
     list
 }
@@ -59,9 +52,7 @@ pub fn blocks(robots: &[Tried]) -> Vec<Block> {
 fn each(robots: &[Tried], of: impl Fn(&Tried) -> Vec<String>) -> String {
     let lists = robots.iter().map(|tried| (&tried.robot.name, of(tried)));
     let words = lists.filter(|(_, list)| !list.is_empty());
-    let words: Vec<String> = words
-        .map(|(name, list)| format!("{name}: {}", list.join(", ")))
-        .collect();
+    let words: Vec<String> = words.map(|(name, list)| format!("{name}: {}", list.join(", "))).collect();
     words.join("; ")
 }
 

@@ -78,10 +78,7 @@ fn opening(real: &Real) -> Vec<Block> {
         sum(&[Missed]).to_string(),
         inside.clone(),
         median.clone(),
-        besides()
-            .filter(|name| name.contradicted_by.is_none())
-            .count()
-            .to_string(),
+        besides().filter(|name| name.contradicted_by.is_none()).count().to_string(),
         contradicted.to_string(),
     ]);
     let head = [
@@ -120,14 +117,7 @@ fn how_hard(real: &Real) -> String {
     };
     let sum = |of: &dyn Fn(&Tried) -> usize| -> usize { real.robots.iter().map(of).sum() };
     let all = sum(&|tried| tried.score.said.len());
-    let several = sum(&|tried| {
-        tried
-            .score
-            .said
-            .iter()
-            .filter(|said| said.said.effects.len() > 1)
-            .count()
-    });
+    let several = sum(&|tried| tried.score.said.iter().filter(|said| said.said.effects.len() > 1).count());
     let found = [PublishedFate::Named, PublishedFate::SameTorque];
     let (named, named_of_several) = (sum(&|tried| count(tried, &found)), sum(&|tried| either(tried, &found)));
     let deniable: Vec<(&str, usize)> = real
@@ -137,15 +127,8 @@ fn how_hard(real: &Real) -> String {
         .filter(|(_, pairs)| *pairs > 0)
         .collect();
     let pairs: usize = deniable.iter().map(|(_, pairs)| pairs).sum();
-    let list: Vec<String> = deniable
-        .iter()
-        .map(|(robot, pairs)| format!("{robot} {pairs}"))
-        .collect();
-    let list = if list.is_empty() {
-        "none".to_owned()
-    } else {
-        list.join(", ")
-    };
+    let list: Vec<String> = deniable.iter().map(|(robot, pairs)| format!("{robot} {pairs}")).collect();
+    let list = if list.is_empty() { "none".to_owned() } else { list.join(", ") };
     format!(
         "Limits of this test: publishers rarely state that an effect is absent, so that a name can contradict the publication for only {pairs} of all \
          (effect, joint) pairs, on {} of {} robots ({list}). Of the {all} published effects, {several} leave open which of several effects is \
@@ -160,16 +143,8 @@ fn how_hard(real: &Real) -> String {
 fn row(tried: &Tried) -> Vec<String> {
     use PublishedFate::{Confusable, Missed, Named, NotObservable, SameTorque, Unexplained};
     let score = &tried.score;
-    let contradicted = score
-        .besides
-        .iter()
-        .filter(|name| name.contradicted_by.is_some())
-        .count();
-    let statements = score
-        .said
-        .iter()
-        .filter(|o| o.said.evidence == Evidence::Statement)
-        .count();
+    let contradicted = score.besides.iter().filter(|name| name.contradicted_by.is_some()).count();
+    let statements = score.said.iter().filter(|o| o.said.evidence == Evidence::Statement).count();
     let said = match statements {
         0 => score.said.len().to_string(),
         n => format!("{} ({n} without a number)", score.said.len()),
@@ -199,12 +174,7 @@ fn by_evidence(real: &Real) -> Block {
         let [inside, median] = agreement(numbers.filter(|number| number.found.is_some()));
         (published > 0).then(|| vec![(*words).to_owned(), published.to_string(), inside, median])
     });
-    let head = [
-        "evidence",
-        "values published",
-        "inside our 95 % interval, of those found",
-        "median difference",
-    ];
+    let head = ["evidence", "values published", "inside our 95 % interval, of those found", "median difference"];
     table(&head, 1, rows.collect())
 }
 
@@ -256,10 +226,7 @@ fn protocol(real: &Real) -> Vec<Block> {
              The test with unseen injected faults is in `docs/proof.md`. The publications are not a complete ground truth either: their values are estimates with another filter, possibly from other recordings, \
              or constants of a controller. A name therefore counts as false only where the publication contradicts it; a name without a publication is listed as such, and its correctness is unknown.",
         ),
-        Block::Code {
-            language: "sh",
-            code: real.command.clone(),
-        },
+        Block::Code { language: "sh", code: real.command.clone() },
     ]
 }
 

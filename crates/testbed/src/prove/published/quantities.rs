@@ -59,9 +59,7 @@ fn other_units(quantity: Quantity, kind: JointKind) -> &'static [Unit] {
 /// states the possible units.
 pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) -> Result<(f64, &'static str), String> {
     let found = effects::spec(effect).and_then(|spec| spec.parameter(parameter));
-    let quantity = found
-        .ok_or_else(|| format!("{effect} has no parameter {parameter}"))?
-        .quantity;
+    let quantity = found.ok_or_else(|| format!("{effect} has no parameter {parameter}"))?.quantity;
     let kind = kind.unwrap_or(JointKind::Revolute);
     let si = quantity.unit(kind);
     let known = || iter::once((si, 1.0)).chain(other_units(quantity, kind).iter().copied());
@@ -69,10 +67,7 @@ pub fn si(effect: &str, parameter: &str, kind: Option<JointKind>, unit: &str) ->
         return Ok((factor, si));
     }
     let known: Vec<&str> = known().map(|(name, _)| name).collect();
-    Err(format!(
-        "\"{unit}\" is no unit of {effect}\u{2019}s {parameter} here; give {}",
-        known.join(" or ")
-    ))
+    Err(format!("\"{unit}\" is no unit of {effect}\u{2019}s {parameter} here; give {}", known.join(" or ")))
 }
 
 #[cfg(test)]
@@ -95,10 +90,7 @@ mod tests {
         assert_eq!(viscous(JointKind::Prismatic, "N s/m"), Ok((1.0, "N s/m")));
         let refused = viscous(JointKind::Prismatic, "N m s/rad").expect_err("a slide does not turn");
         assert!(refused.ends_with("give N s/m"), "{refused}");
-        assert_eq!(
-            si("rotor_inertia", "inertia", Some(JointKind::Prismatic), "g"),
-            Ok((1e-3, "kg"))
-        );
+        assert_eq!(si("rotor_inertia", "inertia", Some(JointKind::Prismatic), "g"), Ok((1e-3, "kg")));
         assert_eq!(si("payload", "mass", None, "kg"), Ok((1.0, "kg")));
     }
 

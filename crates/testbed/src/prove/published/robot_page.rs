@@ -42,14 +42,7 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
     if score.besides.is_empty() {
         list.push(text("No further effect is named."));
     } else {
-        let head = [
-            "also named",
-            "published?",
-            "description",
-            "alternatives",
-            "share",
-            "probability",
-        ];
+        let head = ["also named", "published?", "description", "alternatives", "share", "probability"];
         list.push(table(&head, 4, score.besides.iter().map(besides).collect()));
     }
     list.push(text(not_found(tried)));
@@ -64,10 +57,7 @@ pub fn blocks(tried: &Tried) -> Vec<Block> {
 fn said(outcome: &PublishedOutcome) -> Vec<Vec<String>> {
     let said = &outcome.said;
     let effects: Vec<String> = said.effects.iter().map(|effect| format!("`{effect}`")).collect();
-    let joint = said
-        .joint
-        .as_ref()
-        .map_or_else(String::new, |joint| format!(" on {joint}"));
+    let joint = said.joint.as_ref().map_or_else(String::new, |joint| format!(" on {joint}"));
     let what = format!("{}{joint}", effects.join(" or "));
     let evidence = match said.evidence {
         Evidence::Number => "number",
@@ -135,11 +125,7 @@ fn compared(number: &Compared) -> [String; 4] {
 fn quantity(value: f64, scale: f64, unit: &str, with_unit: bool) -> String {
     let scaled = scaled(scale.abs(), if unit == "1" { "" } else { unit });
     let number = short(value / scaled.factor);
-    if with_unit && !scaled.unit.is_empty() {
-        format!("{number} {}", scaled.unit)
-    } else {
-        number
-    }
+    if with_unit && !scaled.unit.is_empty() { format!("{number} {}", scaled.unit) } else { number }
 }
 
 fn besides(besides: &Besides) -> Vec<String> {
@@ -155,18 +141,13 @@ fn besides(besides: &Besides) -> Vec<String> {
         in_short(&besides.sentence).to_owned(),
         others.join(", "),
         share(besides.share),
-        besides
-            .probability
-            .map_or_else(|| "–".to_owned(), |p| format!("{p:.2}")),
+        besides.probability.map_or_else(|| "–".to_owned(), |p| format!("{p:.2}")),
     ]
 }
 
 /// A finding's sentence without the joint and the error, which the tables have.
 fn in_short(sentence: &str) -> &str {
-    let end = ["; held-out error", ", with which"]
-        .into_iter()
-        .filter_map(|mark| sentence.find(mark))
-        .min();
+    let end = ["; held-out error", ", with which"].into_iter().filter_map(|mark| sentence.find(mark)).min();
     let sentence = &sentence[..end.unwrap_or(sentence.len())];
     sentence.split_once(": ").map_or(sentence, |(_, rest)| rest)
 }
@@ -187,18 +168,11 @@ fn not_found(tried: &Tried) -> String {
     }
     let groups = by_joints.iter().map(|((_, joints), effects)| {
         let is_all = joints.len() == score.held_out.len() && joints.len() > 1;
-        let joints = if is_all {
-            "all joints".to_owned()
-        } else {
-            joints.join(", ")
-        };
+        let joints = if is_all { "all joints".to_owned() } else { joints.join(", ") };
         format!("on {joints} {}", effects.join(", "))
     });
     let groups: Vec<String> = groups.collect();
-    format!(
-        "{unexplained} Not testable with these recordings, or only above a certain size: {}.",
-        groups.join("; ")
-    )
+    format!("{unexplained} Not testable with these recordings, or only above a certain size: {}.", groups.join("; "))
 }
 
 fn errors(tried: &Tried) -> Block {

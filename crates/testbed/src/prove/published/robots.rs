@@ -45,9 +45,7 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
         absent.join(", ")
     );
     for name in &absent {
-        output::say(format_args!(
-            "note: {looked}/{name}: does not exist; the robot is omitted"
-        ));
+        output::say(format_args!("note: {looked}/{name}: does not exist; the robot is omitted"));
     }
     Ok((robots, absent))
 }
@@ -65,9 +63,7 @@ pub fn place(number: usize, robot: &Robot, out: &Path) -> Place {
 /// The robot's files by their names, each with the name that the protocol has for it: `train_…` and `held_out_…`.
 pub fn names(robot: &Robot) -> Vec<(String, String)> {
     let prefixed = |prefix: &'static str, list: &[String]| -> Vec<(String, String)> {
-        list.iter()
-            .map(|name| (name.clone(), format!("{prefix}_{name}")))
-            .collect()
+        list.iter().map(|name| (name.clone(), format!("{prefix}_{name}"))).collect()
     };
     let mut list = vec![(robot.urdf.clone(), "robot.urdf".to_owned())];
     list.extend(prefixed("train", &robot.train));
@@ -98,11 +94,7 @@ pub fn stage(robot: &Robot, folder: &Path, place: &Place) -> anyhow::Result<()> 
     let known: Vec<String> = names(robot).into_iter().map(|(_, to)| to).collect();
     for entry in std::fs::read_dir(&place.folder)?.flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
-        ensure!(
-            known.contains(&name),
-            "{}: belongs to another proof; give another --out",
-            entry.path().display()
-        );
+        ensure!(known.contains(&name), "{}: belongs to another proof; give another --out", entry.path().display());
     }
     output::write_json(&place.truth, &robot.published)
 }

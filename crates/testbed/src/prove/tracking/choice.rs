@@ -25,12 +25,7 @@ pub fn chosen(plans: &[CasePlan], robots: &[Robot]) -> anyhow::Result<BTreeSet<u
 
 fn chosen_on(plans: &[CasePlan], robots: &[Robot], name: &str) -> BTreeSet<usize> {
     let acts = |plan: &&CasePlan| plan.effects.iter().any(|effect| effect != PASSES);
-    let mine = || {
-        plans
-            .iter()
-            .filter(|plan| plan.robot(robots).name() == name)
-            .filter(acts)
-    };
+    let mine = || plans.iter().filter(|plan| plan.robot(robots).name() == name).filter(acts);
     let is_outside = |plan: &CasePlan| plan.effects.iter().any(|effect| faults::is_outside(effect));
     let mut seen: BTreeSet<&str> = BTreeSet::from([PASSES]);
     let mut taken = BTreeSet::new();
@@ -62,21 +57,12 @@ mod tests {
     fn a_dozen_cases_of_different_families_is_selected_from_the_plan() {
         let robots =
             crate::conceal::robots(&[], &crate::cli::ChainArgs::default()).expect("they come with the program");
-        let campaign = |cases: usize| Campaign {
-            seed: 3,
-            cases,
-            lifelike: true,
-            urdf_error: None,
-        };
+        let campaign = |cases: usize| Campaign { seed: 3, cases, lifelike: true, urdf_error: None };
         let plans = campaign(200).plans();
         let taken = chosen(&plans, &robots).expect("the task comes with the program");
         assert_eq!(taken.len(), MOST);
         let plan = |number: &usize| &plans[*number];
-        assert!(
-            taken
-                .iter()
-                .all(|number| plan(number).robot(&robots).name() == "puma560")
-        );
+        assert!(taken.iter().all(|number| plan(number).robot(&robots).name() == "puma560"));
         let outside = |number: &&usize| plan(number).effects.iter().any(|name| faults::is_outside(name));
         assert_eq!(taken.iter().filter(outside).count(), OUTSIDE);
         let families: BTreeSet<&String> = taken.iter().flat_map(|number| &plan(number).effects).collect();

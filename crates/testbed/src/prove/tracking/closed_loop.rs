@@ -91,11 +91,7 @@ impl Run {
             error_without_lag: statistics::rms(other.errors(course).0),
             cut: match rms.is_empty() {
                 true => Vec::new(),
-                false => self
-                    .cut
-                    .iter()
-                    .map(|&count| count as f64 / course.ticks as f64)
-                    .collect(),
+                false => self.cut.iter().map(|&count| count as f64 / course.ticks as f64).collect(),
             },
             model,
             rms,

@@ -64,11 +64,7 @@ impl Course {
 fn table(task: &Scenario, ticks: usize, after: f64) -> Table {
     let dof = task.arm.dof();
     let with = || Vec::with_capacity(ticks * dof);
-    let mut table = Table {
-        q: with(),
-        qd: with(),
-        qdd: with(),
-    };
+    let mut table = Table { q: with(), qd: with(), qdd: with() };
     let mut motion = Motion::new(dof);
     for tick in 0..ticks {
         let [along, rate, change] = way((tick as f64 + after) * TICK - RUN_IN);
@@ -107,12 +103,7 @@ mod tests {
         let course = Course::new(&task, 90.0);
         let n = course.dof;
         assert_eq!((course.begin, course.time(course.run_in)), (87.0, 0.0));
-        assert!(
-            course.at.qd[..n]
-                .iter()
-                .chain(&course.at.qdd[..n])
-                .all(|rate| *rate == 0.0)
-        );
+        assert!(course.at.qd[..n].iter().chain(&course.at.qdd[..n]).all(|rate| *rate == 0.0));
         for tick in 1..course.ticks - 1 {
             for j in 0..n {
                 let [before, here, after] = [tick - 1, tick, tick + 1].map(|tick| course.at.q[tick * n + j]);

@@ -24,12 +24,7 @@ pub struct Plan {
 impl Plan {
     fn new(course: &Course) -> Self {
         let zeros = || vec![0.0; course.middle.q.len()];
-        Self {
-            known: zeros(),
-            learned: zeros(),
-            beyond: zeros(),
-            delays: vec![0.0; course.dof],
-        }
+        Self { known: zeros(), learned: zeros(), beyond: zeros(), delays: vec![0.0; course.dof] }
     }
 
     /// The feed-forward of the URDF.

@@ -34,10 +34,8 @@ const LINES: [([u8; 3], &str, f32); 5] = [
     ([86, 156, 235], "blue", 1.0),
 ];
 /// Tabs: title, entity under the joint's, units (revolute, prismatic).
-const TABS: [(&str, &str, [&str; 2]); 2] = [
-    ("Tracking error", "error", ["mrad", "mm"]),
-    ("Torque commanded", "torque", ["N m", "N"]),
-];
+const TABS: [(&str, &str, [&str; 2]); 2] =
+    [("Tracking error", "error", ["mrad", "mm"]), ("Torque commanded", "torque", ["N m", "N"])];
 
 /// Writes the runs, one per model, to `path`; meshes are searched from the folder of `urdf`.
 ///
@@ -68,14 +66,8 @@ fn log(
     recording.send_recording_name(title)?;
     shapes::log_scene(recording, arm, urdf, &ARMS)?;
     let lines = Model::ALL.iter().zip(LINES);
-    let key: Vec<String> = lines
-        .map(|(model, (_, colour, _))| format!("- {}: {colour}", model.title()))
-        .collect();
-    let key = format!(
-        "{title}\n\nThe arm is the one {}. Lines:\n\n{}",
-        Model::Diagnosed.title(),
-        key.join("\n")
-    );
+    let key: Vec<String> = lines.map(|(model, (_, colour, _))| format!("- {}: {colour}", model.title())).collect();
+    let key = format!("{title}\n\nThe arm is the one {}. Lines:\n\n{}", Model::Diagnosed.title(), key.join("\n"));
     recording.log_static(KEY, &TextDocument::from_markdown(key))?;
     layout::send(recording, PlayState::Playing, |layout| write_layout(layout, arm))?;
     let ticks: Vec<usize> = (course.run_in..course.ticks).step_by(ROW).collect();
@@ -86,10 +78,8 @@ fn log(
                 continue;
             }
             let at = |tick: &usize| tick * course.dof + j;
-            let errors: Vec<f64> = ticks
-                .iter()
-                .map(|tick| 1e3 * (course.at.q[at(tick)] - run.links[at(tick)]))
-                .collect();
+            let errors: Vec<f64> =
+                ticks.iter().map(|tick| 1e3 * (course.at.q[at(tick)] - run.links[at(tick)])).collect();
             let torques: Vec<f64> = ticks.iter().map(|tick| run.tau[at(tick)]).collect();
             let style = SeriesLines::new()
                 .with_names([model.title()])
@@ -102,10 +92,7 @@ fn log(
             }
         }
     }
-    let diagnosed = Model::ALL
-        .iter()
-        .zip(runs)
-        .find(|(model, _)| **model == Model::Diagnosed);
+    let diagnosed = Model::ALL.iter().zip(runs).find(|(model, _)| **model == Model::Diagnosed);
     let shown = diagnosed.map(|(_, run)| &run.links).filter(|links| !links.is_empty());
     let mut workspace = Workspace::new(arm);
     let ticks: Vec<usize> = (course.run_in..course.ticks).step_by(POSE).collect();
@@ -141,9 +128,7 @@ fn write_layout(layout: &mut Layout<'_>, arm: &Arm) -> RecordingStreamResult<Nod
     let title = format!("{}: with the diagnosed effects (solid), reference (amber)", arm.name());
     let scene = layout.scene(arm, &title, 1.0)?;
     let key = layout.view("TextDocument", "Legend", KEY, &[])?;
-    let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| {
-        c.with_row_shares([0.72, 0.28])
-    })?;
+    let left = layout.container(ContainerKind::Vertical, &[scene, key], |c| c.with_row_shares([0.72, 0.28]))?;
     let mut tabs = Vec::new();
     for (title, part, units) in TABS {
         let mut plots = Vec::new();
@@ -159,13 +144,9 @@ fn write_layout(layout: &mut Layout<'_>, arm: &Arm) -> RecordingStreamResult<Nod
                 &properties,
             )?);
         }
-        tabs.push(layout.container(ContainerKind::Grid, &plots, |c| {
-            c.with_grid_columns(2).with_display_name(title)
-        })?);
+        tabs.push(layout.container(ContainerKind::Grid, &plots, |c| c.with_grid_columns(2).with_display_name(title))?);
     }
     let first = tabs.first().map_or("", |tab| tab.path.as_str());
     let tabs = layout.container(ContainerKind::Tabs, &tabs, |c| c.with_active_tab(first))?;
-    layout.container(ContainerKind::Horizontal, &[left, tabs], |c| {
-        c.with_col_shares([0.4, 0.6])
-    })
+    layout.container(ContainerKind::Horizontal, &[left, tabs], |c| c.with_col_shares([0.4, 0.6]))
 }

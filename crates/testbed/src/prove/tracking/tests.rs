@@ -12,23 +12,14 @@ use super::*;
 fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
     let robots = crate::conceal::robots(&["puma560".to_owned()], &crate::cli::ChainArgs::default())
         .expect("it comes with the program");
-    let settings = Settings {
-        training: 1,
-        ..Settings::default()
-    };
+    let settings = Settings { training: 1, ..Settings::default() };
     let concealment = conceal_effects(&robots[0], "case_000", effects, &settings).expect("they can be concealed");
     let folder = tempfile::tempdir().expect("a folder");
     let case = write_case(&concealment, folder.path(), &folder.path().join("truth")).expect("it can be written");
     let joints = robots[0].arm().joints().iter().zip(robots[0].rotor_inertias());
-    let drives = joints.map(|(joint, &inertia)| {
-        Effect::of(&RotorInertia)
-            .on(joint.name.clone())
-            .with("inertia", inertia)
-    });
-    let file = EffectFile {
-        robot: None,
-        effects: drives.chain(named.iter().cloned()).collect(),
-    };
+    let drives =
+        joints.map(|(joint, &inertia)| Effect::of(&RotorInertia).on(joint.name.clone()).with("inertia", inertia));
+    let file = EffectFile { robot: None, effects: drives.chain(named.iter().cloned()).collect() };
     let case = Case {
         robot: &robots[0],
         folder: &case,
@@ -48,16 +39,10 @@ fn errors(tracking: &CaseTracking) -> [f64; 5] {
 fn a_true_name_tracks_as_the_exact_model_does() {
     let joint = || "joint2".to_owned();
     let drag = Injected::new("quadratic_drag", Some("joint2")).with("coefficient", 40.0);
-    let named = Effect::of(&QuadraticDrag)
-        .on(joint())
-        .with("coefficient", 40.0)
-        .with("exponent", 2.0);
+    let named = Effect::of(&QuadraticDrag).on(joint()).with("coefficient", 40.0).with("exponent", 2.0);
     let tracking = tracked(&[drag], &[named]);
     let [nominal, diagnosed, learned, _, exact] = errors(&tracking);
-    assert!(
-        exact < 0.01 * nominal && learned > 10.0 * exact,
-        "{exact} {learned} {nominal}"
-    );
+    assert!(exact < 0.01 * nominal && learned > 10.0 * exact, "{exact} {learned} {nominal}");
     assert!((diagnosed / exact - 1.0).abs() < 0.05, "{diagnosed} {exact}");
     assert_eq!(tracking.start, 60.0);
     assert!(tracking.over_exact().is_some_and(|over| over < 1.05));
@@ -71,19 +56,14 @@ fn delays_offsets_and_deflections_are_compensated() {
     let effects = [
         Injected::new("actuation_delay", on("1").as_deref()).with("delay", 0.0085),
         Injected::new("encoder_offset", on("2").as_deref()).with("offset", 0.03),
-        Injected::new("joint_elasticity", on("3").as_deref())
-            .with("stiffness", 900.0)
-            .with("damping", 2.0),
+        Injected::new("joint_elasticity", on("3").as_deref()).with("stiffness", 900.0).with("damping", 2.0),
         Injected::new("torque_scale", on("5").as_deref()).with("factor", 1.3),
     ];
     let joint = |name: &str| format!("joint{name}");
     let named = [
         Effect::of(&ActuationDelay).on(joint("1")).with("delay", 0.0085),
         Effect::of(&EncoderOffset).on(joint("2")).with("offset", 0.03),
-        Effect::of(&JointElasticity)
-            .on(joint("3"))
-            .with("stiffness", 900.0)
-            .with("damping", 2.0),
+        Effect::of(&JointElasticity).on(joint("3")).with("stiffness", 900.0).with("damping", 2.0),
         Effect::of(&TorqueScale).on(joint("5")).with("factor", 1.3),
     ];
     let tracking = tracked(&effects, &named);

@@ -37,22 +37,12 @@ impl Recorded {
         let inputs: Vec<Input<'_>> = files
             .iter()
             .zip(&recordings)
-            .map(|(name, recording)| Input {
-                name,
-                recording,
-                held_out: false,
-                before: false,
-            })
+            .map(|(name, recording)| Input { name, recording, held_out: false, before: false })
             .collect();
         // Nothing is fitted; only the filtered motion is needed.
-        let options = Options {
-            only: Some(Vec::new()),
-            ..Options::default()
-        };
+        let options = Options { only: Some(Vec::new()), ..Options::default() };
         let diagnosis = diagnosis::diagnose(arm, &inputs, &options, &|_| ())?;
-        Ok(Self {
-            traces: diagnosis.traces.recordings,
-        })
+        Ok(Self { traces: diagnosis.traces.recordings })
     }
 
     /// Learns the residual of `arm` with `effects` on the recorded torques.
@@ -67,15 +57,11 @@ impl Recorded {
         let mut changed: Vec<[Vec<Vec<f64>>; 2]> = Vec::new();
         for trace in &self.traces {
             // The applied torque must be explained, not the commanded one, which may be earlier or larger.
-            let mut tau: Vec<Vec<f64>> = (0..dof)
-                .map(|j| applied(trace, j, effects, &arm.joints()[j].name))
-                .collect();
+            let mut tau: Vec<Vec<f64>> = (0..dof).map(|j| applied(trace, j, effects, &arm.joints()[j].name)).collect();
             let mut q = trace.q.clone();
             for row in 0..trace.time.len() {
                 for (into, signal) in rows.iter_mut().zip([&trace.q, &trace.qd, &trace.qdd]) {
-                    into.iter_mut()
-                        .zip(signal)
-                        .for_each(|(value, joint)| *value = joint[row]);
+                    into.iter_mut().zip(signal).for_each(|(value, joint)| *value = joint[row]);
                 }
                 let [said, qd, qdd] = &rows;
                 model.predict_at(trace.time[row], &mut workspace, said, qd, qdd, &mut prediction);
@@ -91,18 +77,9 @@ impl Recorded {
             .traces
             .iter()
             .zip(&changed)
-            .map(|(trace, [q, tau])| RecordedMotion {
-                q,
-                qd: &trace.qd,
-                qdd: &trace.qdd,
-                tau,
-                moving: &trace.moving,
-            })
+            .map(|(trace, [q, tau])| RecordedMotion { q, qd: &trace.qd, qdd: &trace.qdd, tau, moving: &trace.moving })
             .collect();
-        let options = LearnedOptions {
-            samples: SAMPLES,
-            ..LearnedOptions::default()
-        };
+        let options = LearnedOptions { samples: SAMPLES, ..LearnedOptions::default() };
         Ok(learned::learn(model.arm(), &motions, &options)?)
     }
 }

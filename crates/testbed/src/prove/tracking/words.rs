@@ -49,12 +49,7 @@ pub fn blocks(cases: &[CaseTracking]) -> Vec<Block> {
     rows.push(last);
     let mut head = vec!["case", "injected", "named"];
     head.extend(Model::ALL.map(Model::title));
-    head.extend([
-        "diagnosed over exact",
-        "without the filter's lag: diagnosed",
-        "exact",
-        "diagnosed over exact",
-    ]);
+    head.extend(["diagnosed over exact", "without the filter's lag: diagnosed", "exact", "diagnosed over exact"]);
     list.push(table(&head, 3, rows));
     list.push(text(format!(
         "A stricter measure: the drives filter the velocity at 40 Hz, which delays it by 4 ms, and the loop compares it with the unfiltered reference \
@@ -65,10 +60,8 @@ pub fn blocks(cases: &[CaseTracking]) -> Vec<Block> {
         figure(without(Model::Diagnosed)),
         factor(median(&CaseTracking::over_exact_without_lag)),
     )));
-    let worse: Vec<&CaseTracking> = cases
-        .iter()
-        .filter(|case| case.over_exact().is_some_and(|over| over > WANTED))
-        .collect();
+    let worse: Vec<&CaseTracking> =
+        cases.iter().filter(|case| case.over_exact().is_some_and(|over| over > WANTED)).collect();
     list.push(text(if worse.is_empty() {
         format!("With the named effects, the tracking error of no case exceeds {WANTED} times that of the exact model.")
     } else {
@@ -108,28 +101,15 @@ fn grouped<'a>(names: impl IntoIterator<Item = &'a Name>) -> Vec<String> {
 
 fn row(case: &CaseTracking) -> Vec<String> {
     let injected = case.injected.iter().map(|effect| {
-        let onset = effect
-            .onset
-            .map_or_else(String::new, |onset| format!(" from {onset:.0} s"));
+        let onset = effect.onset.map_or_else(String::new, |onset| format!(" from {onset:.0} s"));
         format!("{}{onset}", name(&(effect.effect.clone(), effect.joint.clone())))
     });
-    let named = case
-        .named
-        .iter()
-        .filter(|named| !BASELINE_WITH_DRIVES.contains(&named.0.as_str()));
+    let named = case.named.iter().filter(|named| !BASELINE_WITH_DRIVES.contains(&named.0.as_str()));
     let or_nothing = |words: Vec<String>| {
-        if words.is_empty() {
-            "baseline effects only".to_owned()
-        } else {
-            words.join(", ")
-        }
+        if words.is_empty() { "baseline effects only".to_owned() } else { words.join(", ") }
     };
     let named: BTreeSet<&Name> = named.collect();
-    let mut cells = vec![
-        case.case.clone(),
-        or_nothing(injected.collect()),
-        or_nothing(grouped(named)),
-    ];
+    let mut cells = vec![case.case.clone(), or_nothing(injected.collect()), or_nothing(grouped(named))];
     cells.extend(Model::ALL.map(|model| figure(case.error(model))));
     cells.push(factor(case.over_exact()));
     cells.extend([Model::Diagnosed, Model::Exact].map(|model| figure(case.error_without_lag(model))));
@@ -140,22 +120,12 @@ fn row(case: &CaseTracking) -> Vec<String> {
 /// The joint on which the diagnosed model is worse than the exact one, and the names that are missing or false.
 fn why(case: &CaseTracking) -> String {
     let of = |model: Model| case.runs.iter().find(|run| run.model == model);
-    let place = of(Model::Diagnosed)
-        .zip(of(Model::Exact))
-        .and_then(|(diagnosed, exact)| {
-            let more = diagnosed
-                .rms
-                .iter()
-                .zip(&exact.rms)
-                .map(|(a, b)| a * a - b * b)
-                .enumerate();
-            let (joint, _) = more.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            let [a, b] = [diagnosed, exact].map(|run| rounded(1e3 * run.rms[joint], 3));
-            Some(format!(
-                "largest on {}, {a} instead of {b} mrad",
-                case.joints.get(joint)?
-            ))
-        });
+    let place = of(Model::Diagnosed).zip(of(Model::Exact)).and_then(|(diagnosed, exact)| {
+        let more = diagnosed.rms.iter().zip(&exact.rms).map(|(a, b)| a * a - b * b).enumerate();
+        let (joint, _) = more.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let [a, b] = [diagnosed, exact].map(|run| rounded(1e3 * run.rms[joint], 3));
+        Some(format!("largest on {}, {a} instead of {b} mrad", case.joints.get(joint)?))
+    });
     let place = place.unwrap_or_else(|| "unstable".to_owned());
     let has = |effect: &&super::InjectedEffect| case.named.contains(&(effect.effect.clone(), effect.joint.clone()));
     let missing: Vec<Name> = case
@@ -166,10 +136,7 @@ fn why(case: &CaseTracking) -> String {
         .collect();
     let is_there = |named: &&Name| {
         BASELINE_WITH_DRIVES.contains(&named.0.as_str())
-            || case
-                .injected
-                .iter()
-                .any(|effect| (&effect.effect, &effect.joint) == (&named.0, &named.1))
+            || case.injected.iter().any(|effect| (&effect.effect, &effect.joint) == (&named.0, &named.1))
     };
     let too_many: BTreeSet<&Name> = case.named.iter().filter(|named| !is_there(named)).collect();
     let mut reasons = Vec::new();
@@ -196,12 +163,7 @@ mod tests {
         names.extend([on("spring", "a"), on("spring", "b"), ("payload".to_owned(), None)]);
         assert_eq!(
             grouped(&names),
-            [
-                "`inertial_parameters` on 3 joints",
-                "`spring` on a",
-                "`spring` on b",
-                "`payload`"
-            ]
+            ["`inertial_parameters` on 3 joints", "`spring` on a", "`spring` on b", "`payload`"]
         );
     }
 }
