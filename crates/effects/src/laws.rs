@@ -42,8 +42,8 @@ pub static ONE: Law = Law { name: "one", column: |_, _, motion| Some(vec![1.0; m
 pub static ACCELERATION: Law =
     Law { name: "acceleration", column: |_, joint, motion| Some(motion.qdd[joint].clone()), ..Law::PLAIN };
 
-/// The rigid torque of the joint. Since an onset, it is with the rest that an earlier fit found: what friction and the rotor add is then
-/// known from the time before.
+/// The rigid torque of the joint. With an onset, it contains the friction and the rotor's torque of an earlier fit as well: a torque
+/// constant that changes multiplies them, too, and they are known from the time before.
 pub static RIGID: Law = Law {
     name: "rigid",
     column: |term, joint, motion| {

@@ -238,8 +238,9 @@ pub struct Spec {
     pub main: &'static [&'static str],
     /// Whether it may begin within the recordings.
     pub may_set_in: bool,
-    /// Whether it is looked for as an effect that acted before a change only: because it has one sign, so that no second effect cancels it,
-    /// or because the background represents it while it acts. Not a friction that generalises a simpler one, which would remain.
+    /// Whether the search also tries it as an effect that ended at a change. This is for effects of one sign, which no second effect can
+    /// cancel, and for those that the background represents while they act. A friction that generalises a simpler one is not tried: the
+    /// simpler one would remain.
     pub may_end: bool,
     /// Whether there may be two on one joint, or on the arm.
     pub may_repeat: bool,
@@ -279,7 +280,8 @@ pub struct Spec {
     pub same_on_all_joints: Option<&'static str>,
     /// Effects on its joint whose error of form resembles it, with the part of each that it must exceed.
     pub least_beside: &'static [(&'static str, f64)],
-    /// The multiple of the residual structure on its joint (of the whole arm: on any joint) that it must exceed, if it may be a part of it.
+    /// It is named only if it is larger than this multiple of the structured residual of its joint, or for an effect on the whole arm, of
+    /// one joint at least. `None` if it cannot be a part of such a residual.
     pub least_beside_residual: Option<f64>,
     /// Whether it is simulated at its size, so that its coefficient must be one: its torque depends on earlier motion.
     pub is_simulated: bool,

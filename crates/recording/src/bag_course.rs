@@ -13,10 +13,11 @@ const SECOND: i64 = 1_000_000_000;
 const LATEST: i64 = SECOND;
 /// The largest number of consecutive messages of a joint that come late or have a wrong stamp.
 const FEW: usize = 10;
-/// A step that no bag has (ns): a few messages on one side of it have a wrong stamp.
+/// A step in time that is longer than any pause of a bag (ns). Of the messages on its two sides, the fewer have wrong stamps.
 const FAR: i64 = 86_400 * SECOND;
-/// The smallest number of messages of a run, and how far from its first time another one may begin, as a share of its duration.
+/// The smallest number of messages of a run.
 const RUN_MESSAGES: usize = 50;
+/// How far from the first time of a run another one may begin, as a share of its duration.
 const RESTART_SHARE: f64 = 0.01;
 
 /// The values of a joint in a message.

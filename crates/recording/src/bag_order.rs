@@ -85,7 +85,7 @@ pub fn set_back(Late { number, time, late }: Late, topic: &str) -> String {
 /// The error that time began again in other joint states than those of `topic`.
 pub fn not_set_back(number: u64, topic: &str) -> String {
     format!(
-        "message {number} of joint states, in {topic}: time began again in other joint states before, and here it did not: were they \
-         stamped by two clocks? Cut the bag, or leave a topic out (`topics` in a column map)"
+        "message {number} of joint states, in {topic}: time began again in other joint states before, but not in these: were they \
+         stamped by two clocks? Cut the bag there, or leave a topic out (`topics` in a column map)"
     )
 }

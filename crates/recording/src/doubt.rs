@@ -11,7 +11,7 @@ use crate::table::{Cell, Row};
 pub type Doubt = (&'static str, &'static str);
 
 /// A value that nothing measures.
-pub const FAR: Doubt = ("far beyond what is measured", "check its unit, or delete the row: gaps are dealt with");
+pub const FAR: Doubt = ("far beyond what is measured", "check its unit, or delete the row: short gaps are filled");
 
 /// Why a cell is no number that can be used.
 pub fn unusable(cell: Cell<'_>, remedy: &'static str) -> Doubt {
@@ -45,7 +45,7 @@ pub fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> R
         column: channel.header.clone(),
         found,
         what: "not a finite number",
-        remedy: "delete the row: a row that is missing is a gap, and gaps are dealt with. If many cells are empty, because several topics were \
+        remedy: "delete the row: a short gap is filled, and a long one divides the recording. If many cells are empty, because several topics were \
                  exported into one table, export each joint's columns from one topic",
     }
 }

@@ -57,8 +57,9 @@ struct Read {
 /// A run that begins when time begins again.
 #[derive(Debug)]
 struct Run {
-    /// What is added to its stamps, and its first time then (ns).
+    /// What is added to its stamps (ns).
     shift: i64,
+    /// Its first time, with the shift (ns).
     start: i64,
 }
 

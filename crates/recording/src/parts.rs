@@ -21,8 +21,8 @@ impl RegularRecording {
         self.held() + self.left_out
     }
 
-    /// Leaves about half of what is held, in windows of at most 20 s that are spread evenly, of a single window its middle. Whether
-    /// anything was left out: what is held for less than 10 s stays.
+    /// Removes about half of the recording. It keeps windows of at most 20 s that are spread evenly, or the middle of a single window.
+    /// Returns whether anything was removed: less than 10 s are kept as they are.
     pub fn thin(&mut self) -> bool {
         if self.held() < SHORTEST {
             return false;
@@ -82,7 +82,7 @@ impl RegularRecording {
     }
 }
 
-/// Leaves of `values` those at `kept`, which are in order.
+/// Keeps only the ranges `kept` of `values`, which are in order.
 fn keep<T: Copy>(values: &mut Vec<T>, kept: &[Range<usize>]) {
     let mut to = 0;
     for window in kept {

@@ -233,7 +233,7 @@ impl<'a> Rows<'a> {
                 row,
                 channel.index,
                 &channel.header,
-                unusable(cell, "delete the row: a row that is missing is a gap, and gaps are dealt with"),
+                unusable(cell, "delete the row: a short gap is filled, and a long one divides the recording"),
             )),
         }
     }

@@ -49,7 +49,7 @@ impl Windows {
         Self { most, level: 0, number: 0, covered: 0.0, last: None, step: 0.0, held: Vec::new(), all: 0.0 }
     }
 
-    /// Counts a row at `time` (s). If a window begins with it, see [`Self::is_full`]. `is_large` ends a window before its time.
+    /// Counts a row at `time` (s). If a window begins with it, call [`Self::is_full`] next. `is_large` ends a window before its time.
     pub fn next(&mut self, time: f64, is_large: bool) -> Next {
         let Some(last) = self.last else {
             self.last = Some(time);

@@ -15,7 +15,7 @@ use recording::{Column, ColumnMap, FindingKind, Quality, Recording, RecordingErr
 
 use self::independent::Stretches;
 pub use self::joints::in_order_of;
-use self::joints::{order, reordered};
+use self::joints::{moving_grippers, order, reordered};
 use crate::check::turns;
 use crate::check::{self, Layout, MisfitKind};
 use crate::named;
@@ -166,6 +166,9 @@ pub fn read(
         named::name_joints(&mut recording, arm);
         let map = map.as_ref().map(|(path, _)| *path);
         let order = order(&recording, arm, &name, &choosing, map)?;
+        for (joint, text) in moving_grippers(&recording, arm) {
+            notes.add("warning", Kind::Misfit(MisfitKind::Columns), &name, about(Some(&joint), &text));
+        }
         let prepared = prepare(recording, name, &order, role, arm, notes)?;
         // The same samples under another name.
         let twin = list.iter().find(|known| {

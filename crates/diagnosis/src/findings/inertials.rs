@@ -52,7 +52,7 @@ pub fn leave_out_single_links(
     });
     (!left_out.is_empty()).then(|| {
         format!(
-            "a change {} would explain a part of the torque, but is not named, because it may be a part of what remains unexplained",
+            "other inertial parameters {} would explain a part of the torque, but are not named, because the residual there is unexplained",
             left_out.join(", and ")
         )
     })

@@ -290,7 +290,9 @@ pub fn look_behind_the_drive(joint: &str) -> String {
 /// The advice for a joint of which friction and drive inertia of any sign, in addition to the known effects, explain more than the catalogue.
 pub fn without_known(joint: &str, error: f64, identified: f64) -> String {
     format!(
-        "the known effects of {joint} may be larger than in these recordings: friction and drive inertia of any sign in addition to them leave an error of {identified:.2}, effects of the catalogue {error:.2}; diagnose these recordings without the known effects of {joint}, and compare the sizes"
+        "the known effects of {joint} may be larger than in these recordings: with friction and drive inertia that may be negative, the error \
+         is {identified:.2}, and with effects of the catalogue {error:.2}; diagnose these recordings without the known effects of {joint}, and \
+         compare the sizes"
     )
 }
 

@@ -71,7 +71,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
     };
     while let Some(off) = off(&selected) {
         let next = problem.without(&selected, off);
-        study.note("its coefficient differs from one, for which it was simulated", &selected, &next);
+        study.note("it was simulated at its size, and the fit multiplies it", &selected, &next);
         selected = next;
     }
     while let Some(long) = lasting(&problem, &selected) {

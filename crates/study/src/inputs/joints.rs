@@ -3,8 +3,32 @@
 use std::path::Path;
 
 use anyhow::bail;
-use arm::{Arm, FixedBecause, FixedJoint};
+use arm::{Arm, FixedBecause, FixedJoint, JointKind};
 use recording::{Recording, RegularRecording, Signal, Warning, nearest};
+
+/// The travel from which a joint with a gripper's name may be one of the arm (rad).
+const LEAST_TRAVEL: f64 = 0.5;
+
+/// The rotating joints that are fixed in the arm because of a gripper's name, but move in the recording, each with a text.
+pub(super) fn moving_grippers(recording: &Recording, arm: &Arm) -> Vec<(String, String)> {
+    let is_gripper = |fixed: &&FixedJoint| fixed.reason == FixedBecause::Gripper && fixed.kind == JointKind::Revolute;
+    let text = |fixed: &FixedJoint| {
+        let column = recording.joints.iter().position(|joint| *joint == fixed.name)?;
+        let positions = recording.q.get(column)?.iter().copied().filter(|q| q.is_finite());
+        let (low, high) =
+            positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(q), high.max(q)));
+        let travel = high - low;
+        (travel > LEAST_TRAVEL).then(|| {
+            format!(
+                "moves by {travel:.2} rad, but is fixed at {} rad in the arm, because its name is that of a gripper's joint; if it is a \
+                 joint of the arm, give the link after it as --tip LINK",
+                fixed.position
+            )
+        })
+    };
+    let grippers = arm.fixed_joints().iter().filter(is_gripper);
+    grippers.filter_map(|fixed| Some((fixed.name.clone(), text(fixed)?))).collect()
+}
 
 /// The column of each joint of the arm. Columns of joints that are fixed in the arm are omitted.
 ///
@@ -222,5 +246,33 @@ mod tests {
         // Another word for each joint, and another number.
         assert_eq!(in_another_spelling(&names(&["left_joint_1", "right_joint_2"]), &known), None);
         assert_eq!(in_another_spelling(&names(&["joint_11", "joint_21"]), &known), None);
+    }
+
+    #[test]
+    fn a_gripper_that_moves_may_be_a_joint_of_the_arm() {
+        let joint = |name: &str, parent: &str, child: &str| {
+            format!(
+                r#"<joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/></joint>
+<link name="{child}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>"#
+            )
+        };
+        let urdf = format!(
+            r#"<robot name="two"><link name="base"/>{}{}</robot>"#,
+            joint("elbow", "base", "a"),
+            joint("GripperYaw", "a", "b")
+        );
+        let arm = Arm::from_urdf_text(&urdf, "two.urdf").expect("it is an arm");
+        let texts = |yaw: f64| {
+            let recording = Recording {
+                joints: vec!["elbow".into(), "GripperYaw".into()],
+                q: vec![vec![0.0, 1.0], vec![f64::NAN, 0.0, yaw]],
+                ..Recording::default()
+            };
+            moving_grippers(&recording, &arm)
+        };
+        assert!(texts(0.2).is_empty());
+        let [(name, text)] = &texts(2.5)[..] else { panic!("one joint") };
+        assert_eq!(name, "GripperYaw");
+        assert!(text.contains("moves by 2.50 rad") && text.contains("--tip LINK"), "{text}");
     }
 }
