@@ -79,7 +79,7 @@ fn flat(value: &Value, place: &str, into: &mut BTreeMap<String, Value>) {
     match value {
         Value::Object(entries) => entries.iter().for_each(|(key, value)| flat(value, &format!("{place}.{key}"), into)),
         Value::Array(list) => {
-            list.iter().enumerate().for_each(|(k, value)| flat(value, &format!("{place}[{k}]"), into))
+            list.iter().enumerate().for_each(|(k, value)| flat(value, &format!("{place}[{k}]"), into));
         }
         value => {
             into.insert(place.to_owned(), value.clone());

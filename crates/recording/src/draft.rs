@@ -112,7 +112,7 @@ fn patterns(headers: &[String]) -> Vec<Pattern> {
             match patterns.iter_mut().find(|pattern| pattern.text == text) {
                 Some(pattern) => pattern.joints.push(joint),
                 None => {
-                    patterns.push(Pattern { words: words(&text.replace("{joint}", "")), joints: vec![joint], text })
+                    patterns.push(Pattern { words: words(&text.replace("{joint}", "")), joints: vec![joint], text });
                 }
             }
         }

@@ -17,7 +17,7 @@ pub fn sentences(next: &NextExperiment) -> Vec<String> {
             listed(&distinguished)
         )),
         Some(duration) => {
-            list.push(format!("a motion of {duration:.0} s within the joint limits makes {} testable", shown(next)))
+            list.push(format!("a motion of {duration:.0} s within the joint limits makes {} testable", shown(next)));
         }
         None => list.push("no motion within the joint limits would give more information".to_owned()),
     }
