@@ -8,7 +8,7 @@ use effects::laws::ACCELERATION;
 
 use crate::data::Data;
 use crate::findings::other_friction::{possible_beside, widen};
-use crate::report::{Change, Confusable, Finding, Place};
+use crate::report::{Change, Confusable, Finding, Parameter, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
@@ -18,7 +18,7 @@ use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::payload::as_last_link;
 use crate::selection::rivals::{Rival, Standing, probability, standing};
-use crate::thresholds::{LISTED_SHARE, SUREST};
+use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MUCH_WRONG_LINKS, SUREST, UNSURE_MASS};
 
 /// The findings, each with its candidate.
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
@@ -77,7 +77,9 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         // no clear change, and a gap or a delay that may be zero is none.
         let spec = named.effect.spec();
         let is_of_size = last_link.is_some() || change.is_some() || spec.is_simulated;
-        let may_be_none = is_of_size && may_be_nothing(spec, &named.parameters);
+        let is_body = study.is_payload(member.candidate) && change.is_none();
+        let may_be_none = is_of_size && may_be_nothing(spec, &named.parameters)
+            || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
@@ -115,6 +117,14 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         });
     }
     list
+}
+
+/// Whether a body with this `mass` may as well be a part of links that all differ from the URDF by `links` (relative): they differ much, the
+/// mass is hardly determined, and the body hardly improves the prediction of held-out recordings. Only the prior then prefers a body.
+fn may_be_links(links: f64, mass: Option<&Parameter>, held_out_gain: Option<f64>) -> bool {
+    let is_unsure = |mass: &Parameter| 0.5 * (mass.ci95[1] - mass.ci95[0]) > UNSURE_MASS * mass.value.abs();
+    let is_unproven = held_out_gain.is_none_or(|gain| gain < GAIN_BESIDE_LINKS);
+    links >= MUCH_WRONG_LINKS && is_unproven && mass.is_some_and(is_unsure)
 }
 
 /// How a candidate changed since the recordings from before.
@@ -174,4 +184,19 @@ fn place(last: &FinalFit, candidate: &Candidate) -> Place {
     let joint = &arm.joints()[candidate.joint.unwrap_or(0)];
     let kind = candidate.hypothesis.kind.get();
     Place { state: kind.region(&candidate.terms(table), joint.kind), ..Place::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_of_any_mass_beside_links_that_are_all_wrong_may_be_a_part_of_them() {
+        let mass = |half: f64| Parameter { value: 1.0, ci95: [1.0 - half, 1.0 + half], unit: "kg" };
+        assert!(may_be_links(0.56, Some(&mass(0.6)), Some(0.04)));
+        assert!(may_be_links(0.56, Some(&mass(0.6)), None));
+        assert!(!may_be_links(0.2, Some(&mass(0.6)), Some(0.04)), "links that are nearly right");
+        assert!(!may_be_links(0.56, Some(&mass(0.3)), Some(0.04)), "a mass that is determined");
+        assert!(!may_be_links(0.56, Some(&mass(0.6)), Some(0.7)), "a better prediction");
+    }
 }
