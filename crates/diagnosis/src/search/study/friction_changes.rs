@@ -32,12 +32,10 @@ impl Study {
         let all = problem.choose([&others[..], &since].concat(), &selected.fit.weights);
         let is_more = |c: usize| all.fit.coefficient(self.candidates[c].columns[0]) > 0.0;
         let until = |c: usize| {
-            let (this, is_since) = (&self.candidates[c], acts_since(&&c));
-            changed.iter().copied().find(|&other| {
-                let candidate = &self.candidates[other];
-                is_since
-                    && !acts_since(&&other)
-                    && (candidate.hypothesis, candidate.joint) == (this.hypothesis, this.joint)
+            let this = &self.candidates[c];
+            changed.iter().copied().find(|other| {
+                let candidate = &self.candidates[*other];
+                !acts_since(&other) && (candidate.hypothesis, candidate.joint) == (this.hypothesis, this.joint)
             })
         };
         let of_sign = since.iter().filter_map(|&c| if is_more(c) { Some(c) } else { until(c) });
