@@ -143,6 +143,7 @@ impl Conclusion {
             sentences::placeholders(&data.arm, &study.strengths.least),
             at_rest::note(last),
             torque_constants::note_on_unnamed(study, &judged.named),
+            torque_constants::note_on_alike(study, &judged.named),
             coupling::note(study, &judged.named),
             torque_lag::note_on_short(table, resampled),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),

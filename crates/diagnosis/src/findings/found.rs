@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use effects::Acts;
-use effects::arm::InertialParameters;
+use effects::arm::{InertialParameters, InertialScale};
 use effects::laws::ACCELERATION;
+use effects::sensor::TorqueScale;
 
 use crate::data::Data;
 use crate::findings::other_friction::{possible_beside, widen};
@@ -18,6 +19,7 @@ use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::payload::as_last_link;
 use crate::selection::rivals::{Rival, Standing, probability, standing};
+use crate::selection::torque_constants;
 use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MUCH_WRONG_LINKS, SUREST, UNSURE_MASS};
 
 /// The findings, each with its candidate.
@@ -63,6 +65,11 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let evidence = over_links.into_iter().chain(over_one_joint).fold(member.evidence, f64::min);
     let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
     let as_links = is_doubtful.then(|| (Hypothesis::of(&InertialParameters), None));
+    // Factors on the masses stand for the torque constants of the other joints.
+    let is_constant = candidate.hypothesis.is(&TorqueScale) && study.always_acts(member.candidate);
+    let alike = torque_constants::alike(study, &last.judged.named);
+    let of_others = is_constant && candidate.joint.is_some_and(|joint| alike.contains(&joint));
+    let as_masses = of_others.then(|| (Hypothesis::of(&InertialScale), None));
     let change = change(last, member.candidate);
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
@@ -78,13 +85,14 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         let spec = named.effect.spec();
         let is_of_size = last_link.is_some() || change.is_some() || spec.is_simulated;
         let is_body = study.is_payload(member.candidate) && change.is_none();
-        let may_be_none = is_of_size && may_be_nothing(spec, &named.parameters)
+        let is_open = of_others
+            || is_of_size && may_be_nothing(spec, &named.parameters)
             || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain);
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
             // The probability is calibrated for the effects that were searched, not for one that is brought along.
-            probability: (k == 0).then(|| standing.probability(if may_be_none { 0.0 } else { evidence })),
+            probability: (k == 0).then(|| standing.probability(if is_open { 0.0 } else { evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
@@ -95,7 +103,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
                 let rivals = standing.rivals.iter().chain(&standing.as_likely);
-                for rival in rivals.chain(&last_link).chain(&as_links).map(confusable) {
+                for rival in rivals.chain(&last_link).chain(&as_links).chain(&as_masses).map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
                     }

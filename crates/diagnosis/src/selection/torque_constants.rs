@@ -8,7 +8,9 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::resample;
 use crate::selection::constant_torques;
 use crate::selection::judge::{self, Judged};
-use crate::thresholds::{CONSTANT_TOLERANCE, LEAST_ALIKE, LEAST_TORQUE_ACCURACY, MOST_USUAL, SYSTEMATIC};
+use crate::thresholds::{
+    ALIKE_CONSTANTS, CONSTANT_TOLERANCE, LEAST_ALIKE, LEAST_TORQUE_ACCURACY, MOST_USUAL, SYSTEMATIC,
+};
 
 /// The relative standard deviation of the torque constants: the stated one, or the one that the recordings require beside the effects of
 /// `set`.
@@ -80,6 +82,45 @@ pub fn note_on_unnamed(study: &Study, selected: &Selection) -> Option<String> {
     })
 }
 
+/// The joints whose named torque constants are alike, if these are half of the joints with a torque or more: the constants of the other
+/// joints, wrong by the inverse factor, and masses smaller by it explain the same torques.
+pub fn alike(study: &Study, selected: &Selection) -> Vec<usize> {
+    let factor = |&c: &usize| {
+        let joint = names(study, c)?;
+        Some((joint, 1.0 + selected.fit.coefficient(study.candidates[c].columns[0])))
+    };
+    let named: Vec<(usize, f64)> = selected.set.iter().filter_map(factor).collect();
+    let of_all = study.data.scales.torque.iter().filter(|&&torque| torque > 0.0).count();
+    let factors = named.iter().map(|(_, factor)| *factor);
+    if are_of_others(&factors.collect::<Vec<f64>>(), of_all) {
+        named.into_iter().map(|(joint, _)| joint).collect()
+    } else {
+        Vec::new()
+    }
+}
+
+/// Whether these factors of the torque constants of some of `joints` joints may as well be the inverse ones of the others.
+fn are_of_others(factors: &[f64], joints: usize) -> bool {
+    let [least, most] = [f64::min, f64::max].map(|of| factors.iter().copied().reduce(of).unwrap_or(1.0));
+    // A single one is the factor of its own joint.
+    let is_half = factors.len() >= LEAST_ALIKE && 2 * factors.len() >= joints && factors.len() < joints;
+    is_half && most <= ALIKE_CONSTANTS * least && (least > 1.0 || most < 1.0)
+}
+
+/// A note on torque constants of half of the joints that are alike.
+pub fn note_on_alike(study: &Study, selected: &Selection) -> Option<String> {
+    let alike = alike(study, selected);
+    let names: Vec<&str> = alike.iter().map(|&joint| &*study.data.arm.joints()[joint].name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the torque scales of {} agree. Those of the other joints, by the inverse factor, and other masses of all links would explain the \
+             same torques: only the URDF's masses decide between the two. If the torques of some joints are in another unit, state it in a \
+             column map; otherwise, record the arm with a known load on the tool",
+            names.join(", ")
+        )
+    })
+}
+
 /// The joint whose torque constant deviates most beyond tolerance, with the candidate that names it; `None` also if most of the
 /// constants deviate alike.
 fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, usize)> {
@@ -129,7 +170,7 @@ fn is_clear(study: &mut Study, selected: &Selection, scale: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::are_alike;
+    use super::{are_alike, are_of_others};
 
     /// A simulated arm of seven joints with an effect outside the catalogue on the sixth: five constants were off by the same factor.
     #[test]
@@ -138,5 +179,17 @@ mod tests {
         assert!(!are_alike(&[0.05, -0.16, -0.05], 0.125));
         assert!(!are_alike(&[0.2, -0.2, 0.2, -0.2], 0.125));
         assert!(!are_alike(&[0.3], 0.125));
+    }
+
+    /// Torques of which those of the last three joints are in amperes: the first four seem to be 2.7 times as large as those of an arm
+    /// with smaller masses.
+    #[test]
+    fn constants_of_half_of_the_joints_that_agree_may_be_those_of_the_others() {
+        assert!(are_of_others(&[2.73, 2.72, 2.72, 2.73], 7));
+        assert!(are_of_others(&[0.31, 0.33], 4));
+        assert!(!are_of_others(&[0.31, 0.33], 7), "two of seven");
+        assert!(!are_of_others(&[2.73, 2.1, 2.72, 2.73], 7), "different constants");
+        assert!(!are_of_others(&[1.05, 0.97], 3), "on both sides of one");
+        assert!(!are_of_others(&[2.7; 3], 3), "all joints: a factor of all masses");
     }
 }

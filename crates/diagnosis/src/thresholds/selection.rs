@@ -144,6 +144,9 @@ pub const MOST_BLOCKS: usize = 80;
 /// are not named one by one. Source: a simulated case with five false constants at a probability of 0.985, whose sixth
 /// joint had an effect outside the catalogue.
 pub const LEAST_ALIKE: usize = 2;
+/// The largest ratio of torque constants that agree, so that those of the other joints may be wrong instead. Source: a simulated Panda whose
+/// last three torques were in amperes; the named constants of the other four had a ratio of 1.003.
+pub const ALIKE_CONSTANTS: f64 = 1.15;
 /// The evidence from the constant torques of single recordings that decides between the offset of a sensor and friction that depends on
 /// the direction (nats). Source: nine such constants in six sets of simulated cases, of which it decides five, all rightly.
 pub const DIRECTION_NATS: f64 = 1.0;
