@@ -278,6 +278,8 @@ pub struct Spec {
     pub may_be_inertial: bool,
     /// The effect with the same torque if this one acts on all joints.
     pub same_on_all_joints: Option<&'static str>,
+    /// The usual coefficients of its first column; others require more evidence.
+    pub usual: Option<[f64; 2]>,
     /// Effects on its joint whose error of form resembles it, with the part of each that it must exceed.
     pub least_beside: &'static [(&'static str, f64)],
     /// It is named only if it is larger than this multiple of the structured residual of its joint, or for an effect on the whole arm, of
@@ -347,6 +349,7 @@ impl Spec {
         is_suggested: false,
         may_be_inertial: false,
         same_on_all_joints: None,
+        usual: None,
         least_beside: &[],
         least_beside_residual: None,
         is_simulated: false,

@@ -10,7 +10,7 @@ use crate::regression::fit::{Fit, Products};
 use crate::regression::table::Table;
 use crate::search::candidate::Candidate;
 use crate::search::physics::is_possible;
-use crate::thresholds::{FRICTION_PRIOR, KNOWN_DRIVE, MOST_SELECTED, TELLING_DRIVES, Thresholds};
+use crate::thresholds::{FRICTION_PRIOR, KNOWN_DRIVE, MOST_SELECTED, TELLING_DRIVES, Thresholds, UNUSUAL_SIZE};
 
 mod exchange;
 mod exclusion;
@@ -90,7 +90,7 @@ impl Problem<'_> {
         Selection { fit, score, ..selected }
     }
 
-    /// The cost of simulated effects whose coefficients differ from one (nats).
+    /// The cost of coefficients that are unusual (nats).
     fn misfit(&self, set: &[usize], fit: &Fit) -> f64 {
         set.iter()
             .map(|&c| &self.candidates[c])
@@ -100,8 +100,11 @@ impl Problem<'_> {
 
     /// The cost of a candidate with this coefficient of its first column (nats): of a simulated effect, it should be one.
     fn misfit_of(&self, candidate: &Candidate, coefficient: f64) -> f64 {
-        if candidate.hypothesis.spec().is_simulated {
+        let spec = candidate.hypothesis.spec();
+        if spec.is_simulated {
             0.5 * (coefficient.max(1e-3).ln() / self.thresholds.unit_spread).powi(2)
+        } else if spec.usual.is_some_and(|[least, most]| !(least..=most).contains(&coefficient)) {
+            UNUSUAL_SIZE
         } else {
             0.0
         }

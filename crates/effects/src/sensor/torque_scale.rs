@@ -27,6 +27,8 @@ static SPEC: Spec = Spec {
     is_certain_in_form: true,
     may_be_inertial: true,
     may_be_hidden: true,
+    // A factor between 0.3 and 3. Source: first diagnosis. Beyond it, the torque is in another unit.
+    usual: Some([-0.7, 2.0]),
     // Unmodelled structure of the residual resembles a factor on the load. Of the seven that were named beside an unexplained residual of
     // their joint in about 1000 simulated cases of three engines, none was right; they were up to 5.0 times as large.
     least_beside_residual: Some(6.0),
@@ -48,8 +50,8 @@ const KNOWN_BODY: &str = "attach a body of known mass to the tool and record the
 /// within the tolerance. Source: scales of 5 and 6 % were named with a limit of 4 %, and every drive may have them.
 const USUAL_DEVIATIONS: f64 = 1.5;
 
-/// The relative deviation from one that a torque scale may have. Source: first diagnosis.
-const RELATIVE: std::ops::Range<f64> = -0.7..2.0;
+/// The relative deviation from one that a torque scale may have: that of a torque in another unit, or on the other side of a gear.
+const RELATIVE: std::ops::Range<f64> = -0.9995..1999.0;
 
 /// Whether the factor of `effect` deviates from one by more than torque constants of this `accuracy`, a relative standard deviation, do.
 pub(crate) fn is_beyond_tolerance(effect: &Effect, accuracy: f64) -> bool {
