@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use arm::JointKind;
-use effects::{EffectKind, Shape};
+use effects::{Shape, Spec};
 
 mod modules;
 
@@ -100,8 +100,7 @@ fn every_scenario_and_robot_comes_with_the_program() {
 }
 
 /// A row of the catalogue's table: name, what it adds, parameters with their units on a turning joint.
-fn row(kind: &dyn EffectKind) -> String {
-    let spec = kind.spec();
+fn row(spec: &Spec) -> String {
     let parameter = |parameter: &effects::Parameter| {
         let unit = parameter.quantity.unit(JointKind::Revolute);
         let remark = match (parameter.remark, parameter.shape) {
@@ -112,7 +111,7 @@ fn row(kind: &dyn EffectKind) -> String {
         let key = parameter.key;
         if remark.is_empty() { format!("`{key}`") } else { format!("`{key}` ({remark})") }
     };
-    let other = kind.has_other().then(|| "`other` (a joint)".to_owned());
+    let other = spec.has_other.then(|| "`other` (a joint)".to_owned());
     let onset = spec.may_set_in.then(|| "`onset` (s)".to_owned());
     let parameters = other.into_iter().chain(spec.parameters.iter().map(parameter)).chain(onset);
     let parameters = parameters.collect::<Vec<_>>().join(", ");
@@ -128,7 +127,7 @@ fn the_catalogues_table_is_the_catalogue() {
     let head = "| effect | torque or meaning | parameters |\n|---|---|---|\n";
     let start = page.find(head).expect("the table is there") + head.len();
     let end = start + page[start..].find("\n\n").expect("the table ends") + 1;
-    let table: String = effects::CATALOGUE.iter().map(|kind| row(*kind)).collect();
+    let table: String = effects::CATALOGUE.iter().map(|spec| row(spec)).collect();
     if std::env::var_os("UPDATE_DOCS").is_some() {
         let page = [&page[..start], &table, &page[end..]].concat();
         std::fs::write(&path, page).expect("the page can be written");

@@ -1,7 +1,7 @@
 //! How well recordings agree with the model of the arm.
 
 use arm::Arm;
-use effects::{Effect, EffectKind, OMITTED_BY_MOST};
+use effects::{Effect, OMITTED_BY_MOST, Spec};
 
 use crate::data::Data;
 use crate::data::input::{Input, check};
@@ -49,10 +49,10 @@ pub fn agreement(
 ) -> Result<Agreement, DiagnosisError> {
     let cutoff = other.map(|other| other.cutoff);
     check(arm, inputs, cutoff.unwrap_or(CUTOFF))?;
-    let wanted = |kind: &&dyn EffectKind| {
+    let wanted = |spec: &&Spec| {
         let joints = arm.joints().iter();
         let of = |joint: &arm::Joint| Wanted {
-            effect: kind.spec().name.to_owned(),
+            effect: spec.name.to_owned(),
             joint: Some(joint.name.clone()),
             ..Wanted::default()
         };

@@ -228,13 +228,13 @@ fn note_filter(trace: &Trace, cutoff: f64, rule: &'static str) {
 
 #[cfg(test)]
 mod tests {
-    use effects::drive::Backlash;
-    use effects::friction::CoulombFriction;
-    use effects::{Effect, EffectKind};
+    use effects::drive::BACKLASH;
+    use effects::friction::COULOMB_FRICTION;
+    use effects::{Effect, Spec};
 
     use super::*;
 
-    fn named(kind: &'static dyn EffectKind, probability: f64, share: f64) -> Finding {
+    fn named(kind: &'static Spec, probability: f64, share: f64) -> Finding {
         Finding {
             probability: Some(probability),
             share_by_joint: [("elbow".to_owned(), share)].into(),
@@ -253,7 +253,7 @@ mod tests {
     }
 
     fn is_taken(findings: &[Finding], unexplained: &[Unexplained]) -> bool {
-        is_taken_after(&[named(&CoulombFriction, 0.985, 0.1)], findings, unexplained)
+        is_taken_after(&[named(&COULOMB_FRICTION, 0.985, 0.1)], findings, unexplained)
     }
 
     fn is_taken_after(first: &[Finding], findings: &[Finding], unexplained: &[Unexplained]) -> bool {
@@ -273,23 +273,23 @@ mod tests {
 
     #[test]
     fn a_second_look_must_reduce_the_errors() {
-        let gap = [named(&Backlash, 0.985, 0.2)];
+        let gap = [named(&BACKLASH, 0.985, 0.2)];
         assert!(is_taken_at(0.2, &[], &gap, &[open("wrist")]));
         assert!(!is_taken_at(0.39, &[], &gap, &[open("wrist")]), "only hidden");
     }
 
     #[test]
     fn a_second_look_needs_a_new_name_that_is_the_reason() {
-        assert!(is_taken(&[named(&Backlash, 0.985, 0.2)], &[open("wrist")]));
+        assert!(is_taken(&[named(&BACKLASH, 0.985, 0.2)], &[open("wrist")]));
         assert!(!is_taken(&[], &[open("wrist")]), "without a name, the residual was only filtered");
-        assert!(!is_taken(&[named(&Backlash, 0.985, 0.02)], &[open("wrist")]), "too small");
-        assert!(!is_taken(&[named(&Backlash, 0.6, 0.2)], &[open("wrist")]), "not certain");
-        assert!(!is_taken(&[named(&CoulombFriction, 0.985, 0.2)], &[open("wrist")]), "known, and baseline");
+        assert!(!is_taken(&[named(&BACKLASH, 0.985, 0.02)], &[open("wrist")]), "too small");
+        assert!(!is_taken(&[named(&BACKLASH, 0.6, 0.2)], &[open("wrist")]), "not certain");
+        assert!(!is_taken(&[named(&COULOMB_FRICTION, 0.985, 0.2)], &[open("wrist")]), "known, and baseline");
     }
 
     #[test]
     fn a_second_look_must_leave_less_unexplained() {
-        let gap = [named(&Backlash, 0.985, 0.2)];
+        let gap = [named(&BACKLASH, 0.985, 0.2)];
         assert!(!is_taken(&gap, &[open("elbow"), open("wrist")]), "as much");
         assert!(!is_taken(&gap, &[open("shoulder")]), "another joint");
         assert!(is_taken(&gap, &[]));
@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn a_second_look_keeps_the_certain_names_of_explained_joints() {
-        let gap = named(&Backlash, 0.985, 0.2);
+        let gap = named(&BACKLASH, 0.985, 0.2);
         let on = |joint: &str| Finding { joint: Some(joint.to_owned()), ..gap.clone() };
         let both = [gap.clone(), on("shoulder")];
         assert!(is_taken_after(&[on("shoulder")], &both, &[]));
@@ -307,7 +307,7 @@ mod tests {
 
     #[test]
     fn the_note_says_what_explains_which_residuals() {
-        let (gap, open) = (named(&Backlash, 0.985, 0.2), [open("elbow"), open("wrist")]);
+        let (gap, open) = (named(&BACKLASH, 0.985, 0.2), [open("elbow"), open("wrist")]);
         let of = |findings, unexplained| Outcome { findings, unexplained, errors: BTreeMap::new() };
         let reason = of(vec![&gap], &open[1..]).reason_beside(&of(Vec::new(), &open));
         assert_eq!(reason.as_deref(), Some("backlash of elbow explains residuals of elbow"));

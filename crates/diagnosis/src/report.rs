@@ -105,7 +105,7 @@ pub struct Report {
 
 /// The names of all effects.
 fn effect_names() -> Vec<&'static str> {
-    CATALOGUE.iter().map(|kind| kind.spec().name).collect()
+    CATALOGUE.iter().map(|spec| spec.name).collect()
 }
 
 /// One effect named.

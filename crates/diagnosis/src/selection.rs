@@ -1,6 +1,6 @@
 //! Phase 4, selection: the effects that keep their name, by size, evidence and prediction of held-out recordings.
 
-use effects::EffectKind;
+use effects::Spec;
 use rayon::prelude::*;
 
 use crate::error::DiagnosisError;
@@ -89,7 +89,7 @@ impl FinalFit {
     }
 
     /// Whether an effect of this kind is named on `joint`.
-    pub fn names(&self, kind: &'static dyn EffectKind, joint: usize) -> bool {
+    pub fn names(&self, kind: &'static Spec, joint: usize) -> bool {
         self.judged.named.set.iter().any(|&c| {
             let candidate = &self.study.candidates[c];
             candidate.joint == Some(joint) && candidate.hypothesis.is(kind)

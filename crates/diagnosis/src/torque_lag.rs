@@ -5,7 +5,7 @@
 
 use effects::Term;
 use effects::background::LAG;
-use effects::drive::{ActuationDelay, LATE, LATE_SIGN, UNIT_LAG};
+use effects::drive::{ACTUATION_DELAY, LATE, LATE_SIGN, UNIT_LAG};
 use nalgebra::{DMatrix, DVector};
 use recording::RegularRecording;
 
@@ -35,7 +35,7 @@ impl TorqueLag {
         let (study, Selection { fit, set, .. }) = (&last.study, &last.judged.named);
         let delays = set.iter().map(|&c| &study.candidates[c]);
         let delays: Vec<usize> = delays
-            .filter(|candidate| candidate.hypothesis.is(&ActuationDelay))
+            .filter(|candidate| candidate.hypothesis.is(&ACTUATION_DELAY))
             .flat_map(|candidate| candidate.columns.iter().copied())
             .collect();
         let columns: Vec<usize> = fit.selected().iter().copied().filter(|column| !delays.contains(column)).collect();

@@ -4,8 +4,8 @@ mod support;
 
 use arm::{Arm, Inertia, Workspace};
 use diagnosis::{Change, Diagnosis, Finding, Input, Options, diagnose};
-use effects::arm::Payload;
-use effects::friction::CoulombFriction;
+use effects::arm::PAYLOAD;
+use effects::friction::COULOMB_FRICTION;
 use recording::RegularRecording;
 use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, regular, sentences, start, trio};
 
@@ -45,7 +45,7 @@ fn changes(diagnosis: &Diagnosis) -> Vec<(&Finding, &str, Option<&str>, Change)>
 
 /// The sum of the levels of Coulomb friction on a joint that the corrected model has (N m).
 fn level(diagnosis: &Diagnosis, joint: &str) -> f64 {
-    let of_joint = |effect: &&effects::Effect| effect.is(&CoulombFriction) && effect.joint() == Some(joint);
+    let of_joint = |effect: &&effects::Effect| effect.is(&COULOMB_FRICTION) && effect.joint() == Some(joint);
     let levels = diagnosis.effects.iter().filter(of_joint).map(|effect| {
         assert_eq!(effect.onset(), None, "today it always acts");
         effect.number("level")
@@ -203,7 +203,7 @@ fn a_load_that_was_taken_off_is_no_error_of_the_model() {
     assert_eq!((effect, joint, change), ("payload", None, Change::Removed));
     let found = finding.parameters["mass"].value;
     assert!((found / mass - 1.0).abs() < 0.02, "{found} instead of {mass}");
-    assert!(!finding.since_before && !diagnosis.effects.iter().any(|effect| effect.is(&Payload)));
+    assert!(!finding.since_before && !diagnosis.effects.iter().any(|effect| effect.is(&PAYLOAD)));
     let others = diagnosis.report.findings.iter().filter(|other| other.effect != "payload");
     assert!(others.clone().all(|other| other.effect.ends_with("friction")), "{:?}", sentences(&diagnosis));
 }

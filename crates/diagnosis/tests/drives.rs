@@ -6,7 +6,7 @@ mod support;
 use arm::Arm;
 use diagnosis::{Diagnosis, Options, Verdict, diagnose};
 use effects::Effect;
-use effects::drive::RotorInertia;
+use effects::drive::ROTOR_INERTIA;
 use recording::RegularRecording;
 use support::{
     ELBOW, Injected, Motion, SHOULDER, delayed_on, exports_what_it_reports, inputs, named, recorded, regular,
@@ -25,7 +25,7 @@ fn rotors() -> Vec<Effect> {
     let arm = trio();
     let on = |joint: usize| {
         let name = &arm.joints()[joint].name;
-        Effect::of(&RotorInertia).on(name).with("inertia", ROTORS[joint])
+        Effect::of(&ROTOR_INERTIA).on(name).with("inertia", ROTORS[joint])
     };
     vec![on(SHOULDER), on(ELBOW)]
 }

@@ -4,19 +4,19 @@ mod support;
 
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Verdict};
-use effects::friction::{CoulombFriction, ViscousFriction};
-use effects::joint::Spring;
-use effects::{Effect, EffectKind};
+use effects::Effect;
+use effects::friction::{COULOMB_FRICTION, VISCOUS_FRICTION};
+use effects::joint::SPRING;
 use support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, effects_on, named, sentences, trio};
 
 /// The friction of [`baseline_friction`], and a spring on the shoulder.
 fn known() -> Vec<Effect> {
     let on = |joint: &str| {
-        let coulomb = Effect::of(&CoulombFriction).on(joint).with("level", 0.6);
-        let viscous = Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.4);
+        let coulomb = Effect::of(&COULOMB_FRICTION).on(joint).with("level", 0.6);
+        let viscous = Effect::of(&VISCOUS_FRICTION).on(joint).with("coefficient", 0.4);
         [coulomb, viscous]
     };
-    let spring = Effect::of(&Spring).on("shoulder").with("stiffness", 8.0).with("rest", 0.2);
+    let spring = Effect::of(&SPRING).on("shoulder").with("stiffness", 8.0).with("rest", 0.2);
     ["turn", "shoulder", "elbow"].into_iter().flat_map(on).chain([spring]).collect()
 }
 
@@ -107,7 +107,7 @@ fn torques_without_gravity_are_recognised() {
         assert!(not_diagnosed.because.contains("contain no gravity"));
         let loaded = ["shoulder", "elbow"].map(|joint| effects_on(&diagnosis, joint));
         assert!(loaded.iter().all(Vec::is_empty), "{:?}", sentences(&diagnosis));
-        assert!(effects_on(&diagnosis, "turn").contains(&CoulombFriction.spec().name));
+        assert!(effects_on(&diagnosis, "turn").contains(&COULOMB_FRICTION.name));
     }
     // On a base that is not level, gravity loads the column, too, if only a little.
     let slope = trio().with_gravity(Vector3::new(0.3, 0.0, -9.8));

@@ -4,7 +4,7 @@ mod support;
 
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options};
-use effects::arm::{Payload, exists};
+use effects::arm::{PAYLOAD, exists, payload_body};
 use support::{
     Injected, Motion, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
 };
@@ -284,8 +284,8 @@ fn a_determined_moment_of_a_load_is_exported() {
     let injected = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
     let robot = arm.clone().with_payload(&load);
     let diagnosis = diagnosed(&arm, &robot, &injected, Vec::new());
-    let payload = diagnosis.effects.iter().find(|effect| effect.is(&Payload));
-    let payload = Payload::inertia(payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))));
+    let payload = diagnosis.effects.iter().find(|effect| effect.is(&PAYLOAD));
+    let payload = payload_body(payload.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))));
     assert!((payload.mass / load.mass - 1.0).abs() < 0.02, "{payload:?}");
     assert!((payload.tensor[(2, 2)] / 1.2e-2 - 1.0).abs() < 0.1, "{payload:?}");
     assert!(exists(payload.mass, &(payload.tensor + Matrix3::identity() * 1e-9)), "{payload:?}");

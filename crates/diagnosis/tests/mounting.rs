@@ -5,7 +5,7 @@ mod support;
 use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Options, diagnose};
 use effects::Effect;
-use effects::friction::CoulombFriction;
+use effects::friction::COULOMB_FRICTION;
 use support::{Motion, TRIO, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
 
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
@@ -167,7 +167,7 @@ fn a_channel_that_known_effects_explain_is_a_torque() {
         let noise = (motion.clock * 23.0).sin() + (motion.clock * 31.7).sin() + (motion.clock * 43.1).sin();
         tau[0] += 90.0 * motion.qd[0].signum() + 12.0 * noise;
     };
-    let known = Effect::of(&CoulombFriction).on("turn".to_owned()).with("level", 90.0);
+    let known = Effect::of(&COULOMB_FRICTION).on("turn".to_owned()).with("level", 90.0);
     let diagnosis = diagnosed(&trio(), &trio(), &injected, vec![known]);
     assert_eq!(not_diagnosed(&diagnosis), "");
 }

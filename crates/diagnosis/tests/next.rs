@@ -5,7 +5,7 @@ mod support;
 
 use diagnosis::{Diagnosis, NextExperiment, Obstacle, Options, diagnose};
 use effects::Effect;
-use effects::drive::TorqueSaturation;
+use effects::drive::TORQUE_SATURATION;
 use recording::{Recording, RegularRecording};
 use support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular, trio};
 use torque::Reference;
@@ -204,7 +204,7 @@ fn a_motion_stays_within_a_torque_limit_that_was_found() {
     assert!(unlimited.limits[SHOULDER].torque > 1.1 * limit, "{unlimited:#?}");
     let options = Options {
         next: true,
-        known: vec![Effect::of(&TorqueSaturation).on("shoulder").with("limit", limit)],
+        known: vec![Effect::of(&TORQUE_SATURATION).on("shoulder").with("limit", limit)],
         ..Options::default()
     };
     let diagnosis = diagnosed_with(&trio(), &trio(), &friction, &options).expect("it can be diagnosed");

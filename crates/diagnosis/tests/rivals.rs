@@ -5,7 +5,7 @@ mod support;
 use arm::{Arm, Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use effects::Effect;
-use effects::drive::{ActuationDelay, Backlash, TorqueSaturation};
+use effects::drive::{ACTUATION_DELAY, BACKLASH, TORQUE_SATURATION};
 use recording::RegularRecording;
 use support::{
     ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, start,
@@ -188,7 +188,7 @@ fn backlash() {
 /// A known gap can only be found again. If it is not, or with another size, that is said.
 #[test]
 fn a_known_gap_is_compared_with_the_recordings() {
-    let gap = |joint: &str, half: f64| Effect::of(&Backlash).on(joint.to_owned()).with("halfgap", half);
+    let gap = |joint: &str, half: f64| Effect::of(&BACKLASH).on(joint.to_owned()).with("halfgap", half);
     let injected = |motion: &mut Motion, tau: &mut [f64]| {
         motion.q[ELBOW] += 0.01 * (tau[ELBOW] / 0.05).tanh();
         baseline_friction(motion, tau);
@@ -212,8 +212,8 @@ fn a_known_gap_is_compared_with_the_recordings() {
 /// Known effects on the commanded torque act one after the other: of two limits the lower one counts, and delays add up.
 #[test]
 fn several_known_effects_on_the_commanded_torque_act_one_after_the_other() {
-    let limit = |limit: f64| Effect::of(&TorqueSaturation).on("shoulder").with("limit", limit);
-    let late = |delay: f64| Effect::of(&ActuationDelay).on("shoulder").with("delay", delay);
+    let limit = |limit: f64| Effect::of(&TORQUE_SATURATION).on("shoulder").with("limit", limit);
+    let late = |delay: f64| Effect::of(&ACTUATION_DELAY).on("shoulder").with("delay", delay);
     let wound_up = |motion: &mut Motion, tau: &mut [f64]| {
         baseline_friction(motion, tau);
         wind_up(&mut tau[SHOULDER], 8.0);

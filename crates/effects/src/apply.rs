@@ -2,10 +2,9 @@
 
 use arm::Arm;
 
-use crate::effect::Effect;
 use crate::error::EffectError;
 use crate::machine::{Machine, Place};
-use crate::spec::Scope;
+use crate::spec::{Effect, Scope};
 
 /// Refuses parameters that are physically impossible.
 ///
@@ -32,7 +31,7 @@ pub fn check(effect: &Effect) -> Result<(), EffectError> {
             return refuse(parameter.key, value, parameter.range.requirement());
         }
     }
-    match effect.kind().get().refuse(effect) {
+    match (effect.spec().refuse)(effect) {
         Some((parameter, value, requirement)) => refuse(parameter, value, requirement),
         None => Ok(()),
     }
@@ -47,15 +46,15 @@ impl Machine {
         let mut machine = Self::without_effects(arm);
         for effect in effects {
             check(effect)?;
-            let kind = effect.kind().get();
+            let spec = effect.spec();
             let place = Place {
-                joint: match effect.spec().scope {
+                joint: match spec.scope {
                     Scope::Joint => joint_of(arm, effect, effect.joint())?,
                     Scope::Arm => 0,
                 },
-                other: if kind.has_other() { joint_of(arm, effect, effect.other())? } else { 0 },
+                other: if spec.has_other { joint_of(arm, effect, effect.other())? } else { 0 },
             };
-            kind.apply(effect, place, &mut machine);
+            (spec.apply)(effect, place, &mut machine);
         }
         Ok(machine)
     }

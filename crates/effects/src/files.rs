@@ -6,9 +6,8 @@ use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::effect::{Effect, Value};
 use crate::kinds::Kind;
-use crate::spec::{Scope, Shape, Spec};
+use crate::spec::{Effect, Scope, Shape, Spec, Value};
 
 impl Serialize for Value {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -250,8 +249,8 @@ fn from_entries(mut entries: Vec<(String, Raw)>) -> Result<Effect, ReadError> {
         return Err(ReadError::UnknownEffect { name });
     };
     let spec = kind.spec();
-    let known = keys(spec, kind.get().has_other());
-    let mut effect = Effect::of(kind.get());
+    let known = keys(spec, spec.has_other);
+    let mut effect = Effect::of(spec);
     let mut given: Vec<String> = Vec::new();
     for (key, raw) in entries {
         if given.contains(&key) {

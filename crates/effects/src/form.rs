@@ -33,6 +33,11 @@ impl Grounds<'_> {
         (0..self.dof()).filter(|&joint| self.scales.moves(joint))
     }
 
+    /// One form on each moving joint, with these columns.
+    pub fn on_moving(&self, turn: Turn, columns: impl Fn(usize) -> Vec<Term>) -> Vec<Form> {
+        self.moving().map(|joint| Form::on(turn, joint, columns(joint))).collect()
+    }
+
     /// Pairs of moving joints: one that an effect acts on, and another on whose motion it depends.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let others = |joint: usize| self.moving().filter(move |&other| other != joint);

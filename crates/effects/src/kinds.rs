@@ -4,14 +4,11 @@ use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 use std::sync::LazyLock;
 
-use crate::effect::Effect;
-use crate::kind::EffectKind;
-use crate::spec::Spec;
-use crate::{CATALOGUE, Term, UNMODELLED};
+use crate::spec::{Effect, Spec};
+use crate::{CATALOGUE, UNMODELLED};
 
 /// The names of the catalogue, in its order.
-pub static NAMES: LazyLock<Vec<&'static str>> =
-    LazyLock::new(|| CATALOGUE.iter().map(|kind| kind.spec().name).collect());
+pub static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| CATALOGUE.iter().map(|spec| spec.name).collect());
 
 /// The spec of the effect `name`; `None` if the catalogue has no such effect.
 pub fn spec(name: &str) -> Option<&'static Spec> {
@@ -31,32 +28,27 @@ pub fn experiment_against(one: &str, other: &str) -> Option<&'static str> {
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     index: usize,
-    kind: &'static dyn EffectKind,
+    spec: &'static Spec,
 }
 
 impl Kind {
-    /// An implementation as a kind.
+    /// A spec as a kind.
     ///
     /// # Panics
     /// If neither [`CATALOGUE`] nor [`UNMODELLED`] contains it.
-    pub fn of(kind: &'static dyn EffectKind) -> Self {
-        Self::with_spec(kind.spec())
-    }
-
-    fn with_spec(spec: &'static Spec) -> Self {
-        let mut all = Self::all();
-        let kind = all.find(|kind| std::ptr::eq(kind.spec(), spec));
+    pub fn of(spec: &'static Spec) -> Self {
+        let kind = Self::all().find(|kind| kind.is(spec));
         kind.expect("every kind is in CATALOGUE or in UNMODELLED")
     }
 
     fn at(index: usize) -> Self {
-        let kind = CATALOGUE.get(index).unwrap_or_else(|| &UNMODELLED[index - CATALOGUE.len()]);
-        Self { index, kind: *kind }
+        let spec = CATALOGUE.get(index).unwrap_or_else(|| &UNMODELLED[index - CATALOGUE.len()]);
+        Self { index, spec }
     }
 
     /// The kind with this name.
     pub fn named(name: &str) -> Option<Self> {
-        CATALOGUE.iter().position(|kind| kind.spec().name == name).map(Self::at)
+        CATALOGUE.iter().position(|spec| spec.name == name).map(Self::at)
     }
 
     /// All kinds, those of the catalogue first.
@@ -64,14 +56,9 @@ impl Kind {
         (0..CATALOGUE.len() + UNMODELLED.len()).map(Self::at)
     }
 
-    /// Its implementation.
-    pub fn get(self) -> &'static dyn EffectKind {
-        self.kind
-    }
-
-    /// What is known of it before any recording.
+    /// Everything that is known of it.
     pub fn spec(self) -> &'static Spec {
-        self.kind.spec()
+        self.spec
     }
 
     /// The name in the catalogue; `None` for an unmodelled form.
@@ -80,20 +67,15 @@ impl Kind {
     }
 
     /// Whether it is this kind.
-    pub fn is(self, kind: &'static dyn EffectKind) -> bool {
-        std::ptr::eq(self.spec(), kind.spec())
+    pub fn is(self, spec: &'static Spec) -> bool {
+        std::ptr::eq(self.spec, spec)
     }
 }
 
 impl Effect {
     /// Its kind.
     pub fn kind(&self) -> Kind {
-        Kind::with_spec(self.spec())
-    }
-
-    /// Its term on the joint of an index, as [`EffectKind::of_torque`] gives it.
-    pub fn of_torque(&self, joint: usize) -> Option<Term> {
-        self.kind().get().of_torque(self, joint)
+        Kind::of(self.spec())
     }
 }
 

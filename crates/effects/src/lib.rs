@@ -1,15 +1,15 @@
-//! The catalogue of the effects that a rigid model omits: one file per effect, and its lines below (module, type, [`CATALOGUE`]).
+//! The catalogue of the effects that a rigid model omits: one file per effect, and its lines below (module, spec, [`CATALOGUE`]).
 //!
-//! A file holds all that the program knows of an effect, behind the trait [`EffectKind`]: its [`Spec`] (name, parameters,
-//! relations, words), the forms to try, the law of its columns, what physics allows, how its parameters are read from an
-//! estimate, and how it is put into a [`Machine`]. The fit of a diagnosis and the feed-forward of a corrected model come
+//! A file holds all that the program knows of an effect, as a static [`Spec`]: name, parameters, relations, words, the forms
+//! to try, the law of its columns, what physics allows, how its parameters are read from an estimate, and how it is put into a
+//! [`Machine`]. The fit of a diagnosis and the feed-forward of a corrected model come
 //! from the same file. [`spec`](spec()) gives what is known of a name.
 //!
 //! ```
 //! use effects::Effect;
-//! use effects::friction::CoulombFriction;
+//! use effects::friction::COULOMB_FRICTION;
 //!
-//! let friction = Effect::of(&CoulombFriction).on("elbow").with("level", 0.4);
+//! let friction = Effect::of(&COULOMB_FRICTION).on("elbow").with("level", 0.4);
 //! assert_eq!(friction.name(), "coulomb_friction");
 //! assert_eq!(friction.number("level"), 0.4);
 //! assert_eq!(effects::spec("coulomb_friction").map(|spec| spec.title), Some("Coulomb friction"));
@@ -21,13 +21,11 @@
 mod apply;
 pub mod background;
 mod compliance;
-mod effect;
 mod error;
 mod estimate;
 mod files;
 mod fitted;
 mod form;
-mod kind;
 mod kinds;
 pub mod laws;
 mod machine;
@@ -41,20 +39,20 @@ mod test_support;
 
 pub use apply::check;
 pub use compliance::LinkSide;
-pub use effect::{Effect, Value};
 pub use error::EffectError;
 pub use estimate::{Estimate, Systematic};
 pub use files::ReadError;
 pub use fitted::{Fitted, UNIT};
 pub use form::{Form, Grounds, SetsIn, Turn};
-pub use kind::EffectKind;
 pub use kinds::{Kind, NAMES, experiment_against, spec};
 pub use laws::Times;
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use regressor::Regressor;
 pub use signals::{Rigid, Scales, Signals};
-pub use spec::{Against, Detectability, Experiment, InUrdf, ONSET, Parameter, Range, Scope, Shape, Spec};
+pub use spec::{
+    Against, Detectability, Effect, Experiment, InUrdf, Intervals, ONSET, Parameter, Range, Scope, Shape, Spec, Value,
+};
 pub use term::{Acts, Carried, Column, Cone, Law, OtherForm, Size, Term};
 
 /// Friction in the drive and its gear.
@@ -67,13 +65,13 @@ pub mod friction {
     mod thermal;
     mod viscous;
 
-    pub use asymmetry::FrictionAsymmetry;
-    pub use coulomb::CoulombFriction;
-    pub use drag::{DRAG, QuadraticDrag, TURBULENT};
-    pub use load_dependent::LoadDependentFriction;
-    pub use stribeck::{StribeckFriction, velocity as stribeck_velocity};
-    pub use thermal::{ThermalDrift, WARMING};
-    pub use viscous::ViscousFriction;
+    pub use asymmetry::FRICTION_ASYMMETRY;
+    pub use coulomb::COULOMB_FRICTION;
+    pub use drag::{DRAG, QUADRATIC_DRAG, TURBULENT};
+    pub use load_dependent::LOAD_DEPENDENT_FRICTION;
+    pub use stribeck::{STRIBECK_FRICTION, velocity as stribeck_velocity};
+    pub use thermal::{THERMAL_DRIFT, WARMING};
+    pub use viscous::VISCOUS_FRICTION;
 }
 
 /// Torques that a drive adds, and changes of its torque.
@@ -86,13 +84,13 @@ pub mod drive {
     mod rotor_inertia;
     mod saturation;
 
-    pub use backlash::Backlash;
-    pub use coupling::{FARTHEST_COUPLED, TransmissionCoupling};
-    pub use delay::{ActuationDelay, LATE, LATE_SIGN, UNIT_LAG};
-    pub use elasticity::JointElasticity;
-    pub use ripple::{TorqueRipple, columns as ripple_columns};
-    pub use rotor_inertia::RotorInertia;
-    pub use saturation::TorqueSaturation;
+    pub use backlash::BACKLASH;
+    pub use coupling::{FARTHEST_COUPLED, TRANSMISSION_COUPLING};
+    pub use delay::{ACTUATION_DELAY, LATE, LATE_SIGN, UNIT_LAG};
+    pub use elasticity::JOINT_ELASTICITY;
+    pub use ripple::{TORQUE_RIPPLE, columns as ripple_columns};
+    pub use rotor_inertia::ROTOR_INERTIA;
+    pub use saturation::TORQUE_SATURATION;
 }
 
 /// Errors of sensors.
@@ -101,9 +99,9 @@ pub mod sensor {
     mod torque_offset;
     mod torque_scale;
 
-    pub use encoder_offset::EncoderOffset;
-    pub use torque_offset::TorqueOffset;
-    pub use torque_scale::TorqueScale;
+    pub use encoder_offset::ENCODER_OFFSET;
+    pub use torque_offset::TORQUE_OFFSET;
+    pub use torque_scale::TORQUE_SCALE;
     pub(crate) use torque_scale::is_beyond_tolerance;
 }
 
@@ -117,16 +115,16 @@ pub mod arm {
     mod tensor;
     mod tilt;
 
-    pub use contact::{ExternalContact, columns as contact_columns, window as contact_window};
-    pub use inertial_parameters::{InertialParameters, PARAMETER as INERTIAL_PARAMETER};
-    pub use inertial_scale::InertialScale;
-    pub use link_error::LinkInertialError;
+    pub use contact::{EXTERNAL_CONTACT, columns as contact_columns, window as contact_window};
+    pub use inertial_parameters::{INERTIAL_PARAMETERS, PARAMETER as INERTIAL_PARAMETER, link_body, link_effect};
+    pub use inertial_scale::INERTIAL_SCALE;
+    pub use link_error::LINK_INERTIAL_ERROR;
     pub use payload::{
-        PARAMETER as PAYLOAD_PARAMETER, Payload, WITHOUT_MOMENTS as PAYLOAD_WITHOUT_MOMENTS, body, exists,
-        moments_by_first,
+        PARAMETER as PAYLOAD_PARAMETER, PAYLOAD, WITHOUT_MOMENTS as PAYLOAD_WITHOUT_MOMENTS, body, exists,
+        moments_by_first, payload_body,
     };
     pub use tensor::{entries, second_moments, tensor};
-    pub use tilt::GravityMisalignment;
+    pub use tilt::GRAVITY_MISALIGNMENT;
 }
 
 /// Torques that depend on a joint's position.
@@ -134,8 +132,8 @@ pub mod joint {
     mod gravity_compensator;
     mod spring;
 
-    pub use gravity_compensator::GravityCompensator;
-    pub use spring::Spring;
+    pub use gravity_compensator::GRAVITY_COMPENSATOR;
+    pub use spring::SPRING;
 }
 
 /// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
@@ -149,57 +147,57 @@ pub mod unmodelled {
     mod product;
     mod time;
 
-    pub use history::History;
-    pub use load::Load;
-    pub use other_position::OtherPosition;
-    pub use other_speed::OtherSpeed;
-    pub use own_position::OwnPosition;
-    pub use periodic::{Periodic, columns as periodic_columns};
-    pub use product::Product;
-    pub use time::Time;
+    pub use history::HISTORY;
+    pub use load::LOAD;
+    pub use other_position::OTHER_POSITION;
+    pub use other_speed::OTHER_SPEED;
+    pub use own_position::OWN_POSITION;
+    pub use periodic::{PERIODIC, columns as periodic_columns};
+    pub use product::PRODUCT;
+    pub use time::TIME;
 }
 
 /// The effects that have a name, in the order of the documentation.
-pub static CATALOGUE: &[&dyn EffectKind] = &[
-    &friction::ViscousFriction,
-    &friction::CoulombFriction,
-    &friction::FrictionAsymmetry,
-    &friction::StribeckFriction,
-    &friction::LoadDependentFriction,
-    &friction::ThermalDrift,
-    &friction::QuadraticDrag,
-    &drive::RotorInertia,
-    &sensor::TorqueScale,
-    &sensor::TorqueOffset,
-    &drive::TorqueRipple,
-    &drive::TorqueSaturation,
-    &drive::ActuationDelay,
-    &drive::JointElasticity,
-    &drive::Backlash,
-    &drive::TransmissionCoupling,
-    &arm::Payload,
-    &arm::LinkInertialError,
-    &arm::InertialScale,
-    &arm::InertialParameters,
-    &arm::GravityMisalignment,
-    &sensor::EncoderOffset,
-    &joint::Spring,
-    &joint::GravityCompensator,
-    &arm::ExternalContact,
+pub static CATALOGUE: &[&Spec] = &[
+    &friction::VISCOUS_FRICTION,
+    &friction::COULOMB_FRICTION,
+    &friction::FRICTION_ASYMMETRY,
+    &friction::STRIBECK_FRICTION,
+    &friction::LOAD_DEPENDENT_FRICTION,
+    &friction::THERMAL_DRIFT,
+    &friction::QUADRATIC_DRAG,
+    &drive::ROTOR_INERTIA,
+    &sensor::TORQUE_SCALE,
+    &sensor::TORQUE_OFFSET,
+    &drive::TORQUE_RIPPLE,
+    &drive::TORQUE_SATURATION,
+    &drive::ACTUATION_DELAY,
+    &drive::JOINT_ELASTICITY,
+    &drive::BACKLASH,
+    &drive::TRANSMISSION_COUPLING,
+    &arm::PAYLOAD,
+    &arm::LINK_INERTIAL_ERROR,
+    &arm::INERTIAL_SCALE,
+    &arm::INERTIAL_PARAMETERS,
+    &arm::GRAVITY_MISALIGNMENT,
+    &sensor::ENCODER_OFFSET,
+    &joint::SPRING,
+    &joint::GRAVITY_COMPENSATOR,
+    &arm::EXTERNAL_CONTACT,
 ];
 
 /// The effects that nearly every URDF omits, and that act on every joint.
-pub static OMITTED_BY_MOST: [&dyn EffectKind; 4] =
-    [&friction::CoulombFriction, &friction::ViscousFriction, &drive::RotorInertia, &sensor::TorqueOffset];
+pub static OMITTED_BY_MOST: [&Spec; 4] =
+    [&friction::COULOMB_FRICTION, &friction::VISCOUS_FRICTION, &drive::ROTOR_INERTIA, &sensor::TORQUE_OFFSET];
 
 /// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
-pub static UNMODELLED: &[&dyn EffectKind] = &[
-    &unmodelled::OwnPosition,
-    &unmodelled::OtherPosition,
-    &unmodelled::OtherSpeed,
-    &unmodelled::History,
-    &unmodelled::Load,
-    &unmodelled::Product,
-    &unmodelled::Periodic,
-    &unmodelled::Time,
+pub static UNMODELLED: &[&Spec] = &[
+    &unmodelled::OWN_POSITION,
+    &unmodelled::OTHER_POSITION,
+    &unmodelled::OTHER_SPEED,
+    &unmodelled::HISTORY,
+    &unmodelled::LOAD,
+    &unmodelled::PRODUCT,
+    &unmodelled::PERIODIC,
+    &unmodelled::TIME,
 ];

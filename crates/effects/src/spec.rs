@@ -1,9 +1,19 @@
-//! What is known of an effect before any recording: name, parameters, relations and texts.
+//! Everything that the program knows of an effect: name, parameters, relations, texts and functions. Each effect is one [`Spec`].
+
+mod effect;
+mod parameter;
 
 use arm::JointKind;
 
-use crate::quantity::Quantity;
+use crate::estimate::Estimate;
+use crate::fitted::Fitted;
+use crate::form::{Form, Grounds, SetsIn};
+use crate::machine::{Machine, Place};
 use crate::regressor::Regressor;
+use crate::term::Term;
+
+pub use effect::{Effect, Value};
+pub use parameter::{ONSET, Parameter, Range, Shape};
 
 /// The evidence that an effect must bring in addition to that of its coefficients (nats), unless its own file states
 /// another. Source: first diagnosis.
@@ -57,113 +67,6 @@ pub enum Against {
     Predicted,
 }
 
-/// What a parameter holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// A number.
-    Number,
-    /// A list of this many numbers. A finding gives them separately, under these keys (not at all if there are none).
-    List(usize, &'static [&'static str]),
-    /// Points (x, y) in order of x.
-    Points,
-}
-
-/// The values that a parameter may have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Range {
-    /// Any finite value.
-    Finite,
-    /// Zero and above.
-    NotNegative,
-    /// Above zero.
-    Positive,
-    /// −1 and above.
-    AtLeastMinusOne,
-    /// Above −1.
-    AboveMinusOne,
-}
-
-impl Range {
-    /// Whether `value` is in it.
-    pub fn contains(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::NotNegative => value >= 0.0,
-                Self::Positive => value > 0.0,
-                Self::AtLeastMinusOne => value >= -1.0,
-                Self::AboveMinusOne => value > -1.0,
-            }
-    }
-
-    /// The requirement on a value, in words.
-    pub fn requirement(self) -> &'static str {
-        match self {
-            Self::Finite => "finite",
-            Self::NotNegative => "finite and not negative",
-            Self::Positive => "finite and positive",
-            Self::AtLeastMinusOne => "finite and at least -1",
-            Self::AboveMinusOne => "finite and above -1",
-        }
-    }
-}
-
-/// A parameter of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its key in files and findings.
-    pub key: &'static str,
-    /// What it measures.
-    pub quantity: Quantity,
-    /// What it holds.
-    pub shape: Shape,
-    /// The values that each of its numbers may have.
-    pub range: Range,
-    /// The value if a file does not give one; `None` if a file must give it.
-    pub default: Option<f64>,
-    /// The value at which there is no effect.
-    pub neutral: f64,
-    /// A remark in files instead of the unit; an empty one leaves the unit out.
-    pub remark: Option<&'static str>,
-}
-
-impl Parameter {
-    /// A finite number that must be given and is neutral at zero.
-    pub const fn new(key: &'static str, quantity: Quantity) -> Self {
-        Self { key, quantity, shape: Shape::Number, range: Range::Finite, default: None, neutral: 0.0, remark: None }
-    }
-
-    /// This parameter, limited to `range`.
-    pub const fn within(mut self, range: Range) -> Self {
-        self.range = range;
-        self
-    }
-
-    /// This parameter with a default.
-    pub const fn or(mut self, default: f64) -> Self {
-        self.default = Some(default);
-        self
-    }
-
-    /// This parameter, which has no effect at the value `neutral`.
-    pub const fn neutral_at(mut self, neutral: f64) -> Self {
-        self.neutral = neutral;
-        self
-    }
-
-    /// This parameter with a shape other than a number.
-    pub const fn of(mut self, shape: Shape) -> Self {
-        self.shape = shape;
-        self
-    }
-
-    /// This parameter with a remark instead of its unit.
-    pub const fn remarked(mut self, remark: &'static str) -> Self {
-        self.remark = Some(remark);
-        self
-    }
-}
-
 /// How the detectable size of an effect that was not found is determined. Sizes are of its first main parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detectability {
@@ -213,6 +116,9 @@ pub struct Experiment {
     /// The experiment that distinguishes it from others.
     pub text: &'static str,
 }
+
+/// The 95 % interval of a parameter by its key; `None` if it has none.
+pub type Intervals<'a> = dyn Fn(&str) -> Option<[f64; 2]> + 'a;
 
 /// Everything that is known of an effect before any recording.
 #[derive(Clone, Copy, Debug)]
@@ -309,6 +215,49 @@ pub struct Spec {
     pub experiment: Option<Experiment>,
     /// Experiments that distinguish it from particular other effects; they precede [`Self::experiment`].
     pub experiments_against: &'static [(&'static str, &'static str)],
+    /// Whether it depends on another joint's motion.
+    pub has_other: bool,
+    /// The forms to try from the beginning; none if residuals suggest them later.
+    pub forms: fn(&Grounds<'_>) -> Vec<Form>,
+    /// How its onset within the recordings is searched, if it may have one.
+    pub sets_in: Option<SetsIn>,
+    /// Whether two candidates on one joint (and with the same other joint) are the same effect at different sizes, judged by
+    /// their first columns.
+    pub is_same: fn(&Term, &Term) -> bool,
+    /// Whether its fitted coefficients are physically possible.
+    pub is_possible: fn(&dyn Fitted) -> bool,
+    /// Whether the 95 % intervals of its parameters, by key, allow a physically possible effect; the last argument is the
+    /// relative standard deviation of the torque constants.
+    pub is_certain: fn(&Effect, &Intervals<'_>, f64) -> bool,
+    /// Whether the effects found beside it exclude it.
+    pub is_contradicted: fn(&Effect, &[Effect]) -> bool,
+    /// The level of its dry friction (N m or N), if it is a dry friction.
+    pub dry_friction: fn(&Effect) -> Option<f64>,
+    /// The effect, given on its joint, with the parameters of an estimate, each recorded with its interval; `None` if it cannot
+    /// be read or has no name.
+    pub read: fn(Effect, &mut dyn Estimate) -> Option<Effect>,
+    /// The term of an effect that is a function of the commanded torque on the joint of an index, with the sizes of the effect;
+    /// its coefficient is one.
+    pub of_torque: fn(&Effect, usize) -> Option<Term>,
+    /// What is wrong with its parameters, apart from their ranges: the parameter, its value and the requirement.
+    pub refuse: fn(&Effect) -> Option<(&'static str, f64, &'static str)>,
+    /// The one effect that acts as two of them on one joint do together; `None` if they stay two.
+    pub sum: fn(&Effect, &Effect) -> Option<Effect>,
+    /// Whether two of them on one joint are the same effect, given twice.
+    pub is_twin: fn(&Effect, &Effect) -> bool,
+    /// Adds the effect to a machine.
+    pub apply: fn(&Effect, Place, &mut Machine),
+    /// The power of the noise in the column of one of its terms, relative to that in the torque of a link with an inertia (kg m² or
+    /// kg), if the noise of the recorded positions is white and passes a filter of half power at a frequency (Hz).
+    pub noise_gain: fn(&Term, f64, f64) -> f64,
+    /// The title of an effect with these parameters, where it differs from [`Self::title`].
+    pub own_title: fn(&Effect) -> Option<&'static str>,
+    /// The sentence of an effect with these parameters, where it differs from [`Self::sentence`].
+    pub own_sentence: fn(&Effect) -> Option<&'static str>,
+    /// What the recordings from before a change say of an effect that is new, as a phrase.
+    pub before_it: fn(&Effect) -> &'static str,
+    /// The region of state where it acts, in words, from its columns on a kind of joint.
+    pub region: fn(&[Term], JointKind) -> Option<String>,
 }
 
 impl Spec {
@@ -364,6 +313,25 @@ impl Spec {
         not_testable_turn: u8::MAX,
         experiment: None,
         experiments_against: &[],
+        has_other: false,
+        forms: |_| Vec::new(),
+        sets_in: None,
+        is_same: |_, _| true,
+        is_possible: |_| true,
+        is_certain: |_, _, _| true,
+        is_contradicted: |_, _| false,
+        dry_friction: |_| None,
+        read: |_, _| None,
+        of_torque: |_, _| None,
+        refuse: |_| None,
+        sum: |_, _| None,
+        is_twin: |_, _| true,
+        apply: |_, _, _| (),
+        noise_gain: |_, _, _| 0.0,
+        own_title: |_| None,
+        own_sentence: |_| None,
+        before_it: |_| "absent in the recordings from before",
+        region: |_, _| None,
     };
 
     /// [`Self::EMPTY`] for an unmodelled form.
@@ -385,6 +353,3 @@ impl Spec {
         Some(self.parameter(key)?.quantity.unit(kind))
     }
 }
-
-/// The onset of an effect, on the recordings' own clock.
-pub static ONSET: Parameter = Parameter::new("onset", Quantity::Time);

@@ -48,7 +48,7 @@ pub fn has_any(finding: &Finding) -> bool {
 #[cfg(test)]
 mod tests {
     use effects::Effect;
-    use effects::arm::InertialScale;
+    use effects::arm::INERTIAL_SCALE;
 
     use super::*;
 
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn one_effect_on_every_joint_is_one_alternative() {
         let on = |effect, joint: &str| Confusable { effect, joint: Some(joint.to_owned()) };
-        let mut finding = Finding::of(Effect::of(&InertialScale));
+        let mut finding = Finding::of(Effect::of(&INERTIAL_SCALE));
         finding.confusable_with = vec![on("torque_scale", "a")];
         assert_eq!(text(&finding), "torque scale on a");
         finding.confusable_with = vec![on("torque_scale", "a"), on("spring", "a"), on("torque_scale", "b")];

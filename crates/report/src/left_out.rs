@@ -47,7 +47,7 @@ pub fn notes(report: &Report) -> Vec<String> {
 mod tests {
     use diagnosis::{Diagnosis, Finding, Parameter, RecordingNames};
     use effects::Effect;
-    use effects::drive::JointElasticity;
+    use effects::drive::JOINT_ELASTICITY;
 
     use super::*;
 
@@ -63,7 +63,7 @@ mod tests {
     fn springs_between_encoders_and_larger_errors_are_noted() {
         let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
         assert!(notes(&report).is_empty());
-        let mut spring = Finding::of(Effect::of(&JointElasticity).on("a".to_owned()));
+        let mut spring = Finding::of(Effect::of(&JOINT_ELASTICITY).on("a".to_owned()));
         let (value, ci95, unit) = (2e6, [1e6, 3e6], "N m/rad");
         spring.parameters.insert("stiffness", Parameter { value, ci95, unit });
         assert!(notes(&report).is_empty());

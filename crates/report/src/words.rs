@@ -37,7 +37,7 @@ pub struct Wording {
 /// The title of a finding's effect. Friction that only the motor's current shows is between motor and torque sensor.
 pub fn effect(finding: &Finding) -> String {
     let effect = &finding.as_effect;
-    let name = effect.kind().get().title(effect);
+    let name = effect.title();
     if finding.is_motor_side() {
         format!("motor-side {name}")
     } else {

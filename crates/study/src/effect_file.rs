@@ -194,7 +194,7 @@ pub fn effect(source: &Source, span: Range<usize>, table: toml::Table, arm: &Arm
 fn is_twin(a: &Effect, b: &Effect) -> bool {
     // An effect with an onset is in addition to one that always acts.
     let same = a.kind() == b.kind() && a.onset() == b.onset() && a.joint() == b.joint();
-    same && a.kind().get().is_twin(a, b)
+    same && (a.spec().is_twin)(a, b)
 }
 
 /// The key whose line is wrong in a table, and the reason with the remedy.

@@ -1,8 +1,10 @@
 //! The parts of effects that the formats of other programs can hold: what URDF and MJCF have in common.
 
 use arm::{Arm, Joint, JointKind};
-use effects::drive::RotorInertia;
-use effects::friction::{CoulombFriction, FrictionAsymmetry, LoadDependentFriction, StribeckFriction, ViscousFriction};
+use effects::drive::ROTOR_INERTIA;
+use effects::friction::{
+    COULOMB_FRICTION, FRICTION_ASYMMETRY, LOAD_DEPENDENT_FRICTION, STRIBECK_FRICTION, VISCOUS_FRICTION,
+};
 use effects::{Effect, InUrdf};
 use report::numbers;
 
@@ -31,15 +33,15 @@ pub enum Held {
 pub fn level(effect: &Effect) -> Option<(f64, Held)> {
     if effect.onset().is_some() {
         None
-    } else if effect.is(&CoulombFriction) {
+    } else if effect.is(&COULOMB_FRICTION) {
         Some((effect.number("level"), Held::Whole))
-    } else if effect.is(&FrictionAsymmetry) {
+    } else if effect.is(&FRICTION_ASYMMETRY) {
         let mean = 0.5 * (effect.number("positive") + effect.number("negative"));
         Some((mean, Held::Without("the difference between the directions; their mean is in it")))
-    } else if effect.is(&StribeckFriction) {
+    } else if effect.is(&STRIBECK_FRICTION) {
         let held = Held::Without("the rise towards standstill; the level in motion is in it");
         Some((effect.number("coulomb"), held))
-    } else if effect.is(&LoadDependentFriction) {
+    } else if effect.is(&LOAD_DEPENDENT_FRICTION) {
         let held = Held::Without("the part in proportion to the load; the level without load is in it");
         Some((effect.number("coulomb"), held))
     } else {
@@ -53,7 +55,7 @@ pub fn in_common(effect: &Effect) -> Held {
         Held::Nothing
     } else if let Some((_, held)) = level(effect) {
         held
-    } else if effect.spec().in_urdf != InUrdf::Nothing || effect.is(&RotorInertia) {
+    } else if effect.spec().in_urdf != InUrdf::Nothing || effect.is(&ROTOR_INERTIA) {
         Held::Whole
     } else {
         Held::Nothing
@@ -67,7 +69,7 @@ pub fn friction(joint: &Joint, effects: &[Effect]) -> Option<(f64, f64)> {
         effects.iter().filter(|effect| effect.joint() == Some(joint.name.as_str()) && effect.onset().is_none());
     let mut found = None;
     for effect in on_joint {
-        let (damping, friction) = if effect.is(&ViscousFriction) {
+        let (damping, friction) = if effect.is(&VISCOUS_FRICTION) {
             (effect.number("coefficient"), 0.0)
         } else if let Some((level, _)) = level(effect) {
             (0.0, level)

@@ -5,10 +5,10 @@ mod tests;
 
 use arm::{Arm, Frame, Inertia, Joint, JointKind, Pose};
 use effects::Effect;
-use effects::arm::{GravityMisalignment, Payload};
-use effects::drive::TorqueSaturation;
-use effects::joint::Spring;
-use effects::sensor::EncoderOffset;
+use effects::arm::{GRAVITY_MISALIGNMENT, PAYLOAD, payload_body};
+use effects::drive::TORQUE_SATURATION;
+use effects::joint::SPRING;
+use effects::sensor::ENCODER_OFFSET;
 use quick_xml::Writer;
 use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 use torque::Corrected;
@@ -26,14 +26,14 @@ pub fn mjcf(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Export> {
     let always: Vec<Effect> = effects.iter().filter(|effect| effect.onset().is_none()).cloned().collect();
     // A body of negative mass, for a tool that is not mounted, is a part of the last link.
     let (apart, within): (Vec<Effect>, Vec<Effect>) =
-        always.into_iter().partition(|effect| effect.is(&Payload) && is_body(&Payload::inertia(effect)));
+        always.into_iter().partition(|effect| effect.is(&PAYLOAD) && is_body(&payload_body(effect)));
     let corrected = Corrected::new(arm, &within)?;
     let mut omitted = held::left_out(arm, effects, held_of)?;
     let model = Model {
         arm: corrected.arm(),
         corrected: &corrected,
         effects: &within,
-        payloads: apart.iter().map(Payload::inertia).collect(),
+        payloads: apart.iter().map(payload_body).collect(),
     };
     let text = model.write(&mut omitted, effects.len())?;
     Ok(Export { text, omitted })
@@ -44,8 +44,8 @@ fn held_of(effect: &Effect) -> Held {
     if effect.onset().is_some() {
         return Held::Nothing;
     }
-    let is_straight = effect.is(&Spring) && effect.points("curve").is_empty() && effect.number("stiffness") > 0.0;
-    if is_straight || effect.is(&EncoderOffset) || effect.is(&GravityMisalignment) || effect.is(&TorqueSaturation) {
+    let is_straight = effect.is(&SPRING) && effect.points("curve").is_empty() && effect.number("stiffness") > 0.0;
+    if is_straight || effect.is(&ENCODER_OFFSET) || effect.is(&GRAVITY_MISALIGNMENT) || effect.is(&TORQUE_SATURATION) {
         Held::Whole
     } else {
         held::in_common(effect)
@@ -173,7 +173,7 @@ impl Model<'_> {
     /// All linear springs of a joint as one: stiffness (N m/rad or N/m) and rest position (rad or m).
     fn spring(&self, joint: &Joint) -> (f64, f64) {
         let springs = self.effects.iter().filter(|effect| {
-            effect.is(&Spring) && effect.joint() == Some(joint.name.as_str()) && held_of(effect) == Held::Whole
+            effect.is(&SPRING) && effect.joint() == Some(joint.name.as_str()) && held_of(effect) == Held::Whole
         });
         let (mut stiffness, mut torque) = (0.0, 0.0);
         for spring in springs {

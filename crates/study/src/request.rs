@@ -7,7 +7,7 @@ use anyhow::{Context, ensure};
 use arm::{Arm, ChainOptions};
 use diagnosis::{Diagnosis, Doubt, Input, Options, RecordingNames, Step, Wanted, WithoutLag};
 use effects::Effect;
-use effects::arm::Payload;
+use effects::arm::PAYLOAD;
 use torque::summed;
 
 use crate::effect_file::EffectFile;
@@ -219,7 +219,7 @@ fn with_one_map(mut doubts: Vec<Doubt>) -> Vec<Doubt> {
 
 /// A note on known effects of which a smaller size since the recordings from before is not found; `None` if there are none.
 fn less_than_known(known: &[Effect]) -> Option<String> {
-    let may_be_less = known.iter().filter(|effect| effect.spec().may_end && !effect.is(&Payload));
+    let may_be_less = known.iter().filter(|effect| effect.spec().may_end && !effect.is(&PAYLOAD));
     let names: BTreeSet<&str> = may_be_less.map(Effect::name).collect();
     (!names.is_empty()).then(|| {
         let names: Vec<&str> = names.into_iter().collect();

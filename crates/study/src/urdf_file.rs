@@ -9,8 +9,8 @@ use std::ops::Range;
 use anyhow::Context;
 use arm::{Arm, Inertia};
 use effects::Effect;
-use effects::arm::{InertialParameters, InertialScale, LinkInertialError, Payload};
-use effects::drive::RotorInertia;
+use effects::arm::{INERTIAL_PARAMETERS, INERTIAL_SCALE, LINK_INERTIAL_ERROR, PAYLOAD, payload_body};
+use effects::drive::ROTOR_INERTIA;
 use torque::Corrected;
 
 use self::scan::{JointPlaces, LinkPlaces, Place, Places};
@@ -36,7 +36,7 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
         drive.is_some_and(|drive| drive.rotor.is_none())
     };
     let mut omitted = held::left_out(arm, effects, |effect| match held::in_common(effect) {
-        Held::Whole if effect.is(&RotorInertia) && is_described(effect) => {
+        Held::Whole if effect.is(&ROTOR_INERTIA) && is_described(effect) => {
             Held::Without("the file has a transmission of this joint, which stays as it was")
         }
         held => held,
@@ -159,7 +159,7 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
     for (j, joint) in arm.joints().iter().enumerate() {
         let on_joint = |effect: &&Effect| effect.joint() == Some(&joint.name);
         let welded = arm.frames().iter().filter(|frame| frame.link == Some(j)).map(|frame| &frame.name);
-        if always.iter().filter(on_joint).any(|effect| effect.is(&InertialParameters)) {
+        if always.iter().filter(on_joint).any(|effect| effect.is(&INERTIAL_PARAMETERS)) {
             // The recordings only determine the body of all welded links together, which is written to the first.
             changed.push(Changed {
                 link: joint.link_name.clone(),
@@ -172,9 +172,9 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
         let factor: f64 = always
             .iter()
             .map(|effect| {
-                if effect.is(&InertialScale) {
+                if effect.is(&INERTIAL_SCALE) {
                     effect.number("factor")
-                } else if effect.is(&LinkInertialError) && on_joint(&effect) {
+                } else if effect.is(&LINK_INERTIAL_ERROR) && on_joint(&effect) {
                     1.0 + effect.number("relative")
                 } else {
                     1.0
@@ -182,8 +182,8 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
             })
             .product();
         for link in std::iter::once(&joint.link_name).chain(welded) {
-            let payloads = always.iter().filter(|effect| effect.is(&Payload) && *link == tool);
-            let payloads: Vec<Inertia> = payloads.map(Payload::inertia).collect();
+            let payloads = always.iter().filter(|effect| effect.is(&PAYLOAD) && *link == tool);
+            let payloads: Vec<Inertia> = payloads.map(payload_body).collect();
             if factor == 1.0 && payloads.is_empty() {
                 continue;
             }
@@ -204,7 +204,7 @@ fn changed_links(arm: &Arm, effects: &[Effect], places: &Places) -> anyhow::Resu
 
 /// The drive inertia of `joint` by `effects` (kg m² at the joint).
 fn drive_inertia(effects: &[Effect], joint: &str) -> f64 {
-    let on_joint = |effect: &&Effect| effect.is(&RotorInertia) && effect.joint() == Some(joint);
+    let on_joint = |effect: &&Effect| effect.is(&ROTOR_INERTIA) && effect.joint() == Some(joint);
     effects.iter().filter(on_joint).map(|effect| effect.number("inertia")).sum()
 }
 

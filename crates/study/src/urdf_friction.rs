@@ -1,8 +1,8 @@
 //! Friction and drive inertias in the URDF, as known effects.
 
 use arm::Arm;
-use effects::drive::RotorInertia;
-use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::drive::ROTOR_INERTIA;
+use effects::friction::{COULOMB_FRICTION, VISCOUS_FRICTION};
 use effects::{Effect, InUrdf};
 
 use crate::held;
@@ -55,21 +55,21 @@ pub fn known_friction(
             known.iter().any(|effect| effect.joint() == Some(&joint.name) && is_such(effect))
         };
         if joint.damping > 0.0 && !has(&|effect| effect.spec().in_urdf == InUrdf::Damping) {
-            effects.push(Effect::of(&ViscousFriction).on(&joint.name).with("coefficient", joint.damping));
+            effects.push(Effect::of(&VISCOUS_FRICTION).on(&joint.name).with("coefficient", joint.damping));
         }
         if joint.friction > 0.0 && !has(&|effect| held::level(effect).is_some()) {
-            effects.push(Effect::of(&CoulombFriction).on(&joint.name).with("level", joint.friction));
+            effects.push(Effect::of(&COULOMB_FRICTION).on(&joint.name).with("level", joint.friction));
         }
     }
     if which != UrdfFriction::Ignored {
         let is_open = |name: &str| {
             let is_here = arm.joints().iter().any(|joint| joint.name == name);
-            let is_known = |effect: &Effect| effect.is(&RotorInertia) && effect.joint() == Some(name);
+            let is_known = |effect: &Effect| effect.is(&ROTOR_INERTIA) && effect.joint() == Some(name);
             is_here && !known.iter().any(is_known)
         };
         for (joint, inertia) in stated_drive_inertias(&robot.text)? {
             if inertia > 0.0 && is_open(&joint) {
-                effects.push(Effect::of(&RotorInertia).on(&joint).with("inertia", inertia));
+                effects.push(Effect::of(&ROTOR_INERTIA).on(&joint).with("inertia", inertia));
             }
         }
     }
@@ -117,21 +117,21 @@ mod tests {
         let (none, remark) = known_friction(&file, &arm, UrdfFriction::Ignored, &[]).expect("it reads");
         assert_eq!((none.len(), remark), (0, None));
 
-        let found = [Effect::of(&ViscousFriction).on("b").with("coefficient", 1.5)];
+        let found = [Effect::of(&VISCOUS_FRICTION).on("b").with("coefficient", 1.5)];
         let (file, arm) = robot(&corrected_urdf(TWO, &arm, &found).expect("it is written").text);
         let (known, remark) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &[]).expect("it reads");
         assert_eq!(known, found);
         assert!(remark.expect("it says so").contains("of a is not used"));
         // The next findings are in addition to it, and become one effect of each kind.
-        let level = Effect::of(&CoulombFriction).on("b").with("level", 0.25);
-        let other = Effect::of(&ViscousFriction).on("a").with("coefficient", 4.0);
+        let level = Effect::of(&COULOMB_FRICTION).on("b").with("level", 0.25);
+        let other = Effect::of(&VISCOUS_FRICTION).on("a").with("coefficient", 4.0);
         let more = summed(&known, &[level, found[0].clone(), other]);
         assert_eq!(more.len(), 3);
         let (_, arm) = robot(&corrected_urdf(&file.text, &arm, &more).expect("it is written").text);
         let joint = &arm.joints()[1];
         assert_eq!((joint.damping, joint.friction), (3.0, 0.25));
         // A written drive inertia is known, at the joint, and is replaced by the sum with the found one.
-        let drive = |inertia: f64| Effect::of(&RotorInertia).on("a").with("inertia", inertia);
+        let drive = |inertia: f64| Effect::of(&ROTOR_INERTIA).on("a").with("inertia", inertia);
         let geared = corrected_urdf(TWO, &arm, &[drive(0.5)]).expect("it is written").text;
         let geared = geared.replace("gear_ratio value=\"1\"", "gear_ratio value=\"10\"");
         let (file, arm) = robot(&geared);
@@ -147,6 +147,6 @@ mod tests {
         let (file, arm) = robot(&corrected_urdf(&file.text, &arm, &found).expect("it is written").text);
         // The damping of --known on a joint replaces the file's.
         let (known, _) = known_friction(&file, &arm, UrdfFriction::Diagnosed, &found).expect("it reads");
-        assert!(known.iter().all(|effect| effect.is(&CoulombFriction)), "{known:?}");
+        assert!(known.iter().all(|effect| effect.is(&COULOMB_FRICTION)), "{known:?}");
     }
 }

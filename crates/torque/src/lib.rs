@@ -6,11 +6,11 @@
 //!
 //! ```
 //! use arm::Arm;
-//! use effects::{Effect, friction::CoulombFriction};
+//! use effects::{Effect, friction::COULOMB_FRICTION};
 //! use torque::{Corrected, Prediction, RigidBody, TorqueModel, Workspace};
 //!
 //! let arm = Arm::from_urdf("../../assets/puma560.urdf")?;
-//! let friction = Effect::of(&CoulombFriction).on(&arm.joints()[1].name).with("level", 0.4);
+//! let friction = Effect::of(&COULOMB_FRICTION).on(&arm.joints()[1].name).with("level", 0.4);
 //! let corrected = Corrected::new(&arm, &[friction])?;
 //! let torque_of_joint_2 = |model: &dyn TorqueModel| {
 //!     let (mut workspace, mut prediction) = (Workspace::new(6), Prediction::new(6));

@@ -10,7 +10,7 @@ pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
         let together = |other: &Effect| {
             let key = |effect: &Effect| (effect.kind(), effect.joint().map(str::to_owned), effect.onset());
             let is_same = key(other) == key(effect);
-            is_same.then(|| effect.kind().get().sum(other, effect)).flatten()
+            is_same.then(|| (effect.spec().sum)(other, effect)).flatten()
         };
         match sum.iter_mut().find_map(|other| Some((together(other)?, other))) {
             Some((both, one)) => *one = both,
@@ -23,11 +23,11 @@ pub fn summed(known: &[Effect], found: &[Effect]) -> Vec<Effect> {
 #[cfg(test)]
 mod tests {
     use arm::Arm;
-    use effects::arm::{InertialScale, LinkInertialError, Payload};
-    use effects::drive::{Backlash, RotorInertia};
-    use effects::friction::{CoulombFriction, QuadraticDrag, ViscousFriction};
-    use effects::joint::Spring;
-    use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
+    use effects::arm::{INERTIAL_SCALE, LINK_INERTIAL_ERROR, PAYLOAD};
+    use effects::drive::{BACKLASH, ROTOR_INERTIA};
+    use effects::friction::{COULOMB_FRICTION, QUADRATIC_DRAG, VISCOUS_FRICTION};
+    use effects::joint::SPRING;
+    use effects::sensor::{ENCODER_OFFSET, TORQUE_OFFSET, TORQUE_SCALE};
 
     use super::*;
     use crate::{Corrected, Prediction, TorqueModel, Workspace};
@@ -53,18 +53,18 @@ mod tests {
     #[test]
     fn the_sum_of_two_effects_is_both() {
         let on = |kind| Effect::of(kind).on("a");
-        let spring = |stiffness: f64, rest: f64| on(&Spring).with("stiffness", stiffness).with("rest", rest);
-        let drag = |exponent: f64| on(&QuadraticDrag).with("coefficient", 0.4).with("exponent", exponent);
-        let scale = |factor: f64| Effect::of(&InertialScale).with("factor", factor);
-        let body = |mass: f64| Effect::of(&Payload).with("mass", mass).with("com", [0.1, 0.0, 0.0]);
+        let spring = |stiffness: f64, rest: f64| on(&SPRING).with("stiffness", stiffness).with("rest", rest);
+        let drag = |exponent: f64| on(&QUADRATIC_DRAG).with("coefficient", 0.4).with("exponent", exponent);
+        let scale = |factor: f64| Effect::of(&INERTIAL_SCALE).with("factor", factor);
+        let body = |mass: f64| Effect::of(&PAYLOAD).with("mass", mass).with("com", [0.1, 0.0, 0.0]);
         let list = [
-            (on(&CoulombFriction).with("level", 2.0), on(&CoulombFriction).with("level", 0.5), 1),
-            (on(&ViscousFriction).with("coefficient", 2.0), on(&ViscousFriction).with("coefficient", 0.5), 1),
-            (on(&RotorInertia).with("inertia", 2.0), on(&RotorInertia).with("inertia", 0.5), 1),
-            (on(&TorqueOffset).with("offset", 2.0), on(&TorqueOffset).with("offset", -0.5), 1),
-            (on(&EncoderOffset).with("offset", 0.05), on(&EncoderOffset).with("offset", -0.02), 1),
-            (on(&TorqueScale).with("factor", 1.1), on(&TorqueScale).with("factor", 0.9), 1),
-            (on(&LinkInertialError).with("relative", 0.2), on(&LinkInertialError).with("relative", -0.1), 1),
+            (on(&COULOMB_FRICTION).with("level", 2.0), on(&COULOMB_FRICTION).with("level", 0.5), 1),
+            (on(&VISCOUS_FRICTION).with("coefficient", 2.0), on(&VISCOUS_FRICTION).with("coefficient", 0.5), 1),
+            (on(&ROTOR_INERTIA).with("inertia", 2.0), on(&ROTOR_INERTIA).with("inertia", 0.5), 1),
+            (on(&TORQUE_OFFSET).with("offset", 2.0), on(&TORQUE_OFFSET).with("offset", -0.5), 1),
+            (on(&ENCODER_OFFSET).with("offset", 0.05), on(&ENCODER_OFFSET).with("offset", -0.02), 1),
+            (on(&TORQUE_SCALE).with("factor", 1.1), on(&TORQUE_SCALE).with("factor", 0.9), 1),
+            (on(&LINK_INERTIAL_ERROR).with("relative", 0.2), on(&LINK_INERTIAL_ERROR).with("relative", -0.1), 1),
             (scale(1.2), scale(0.9), 1),
             (spring(3.0, 0.2), spring(-1.0, 0.5), 1),
             (drag(2.0), drag(2.0), 1),
@@ -83,10 +83,10 @@ mod tests {
     /// Effects on other joints, or with an onset of their own, are not added.
     #[test]
     fn effects_at_other_places_and_times_stay_apart() {
-        let offset = |joint: &str, onset| Effect::of(&TorqueOffset).on(joint).with("offset", 1.0).since(onset);
+        let offset = |joint: &str, onset| Effect::of(&TORQUE_OFFSET).on(joint).with("offset", 1.0).since(onset);
         let sum = summed(&[offset("a", None)], &[offset("b", None), offset("a", Some(2.0))]);
         assert_eq!(sum.len(), 3, "{sum:?}");
-        let gap = |size: f64| Effect::of(&Backlash).on("a").with("halfgap", size);
+        let gap = |size: f64| Effect::of(&BACKLASH).on("a").with("halfgap", size);
         assert_eq!(summed(&[gap(0.01)], &[gap(0.02)]).len(), 2);
     }
 }

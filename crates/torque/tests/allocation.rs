@@ -3,9 +3,9 @@
 mod support;
 
 use effects::Effect;
-use effects::arm::ExternalContact;
-use effects::friction::LoadDependentFriction;
-use effects::joint::Spring;
+use effects::arm::EXTERNAL_CONTACT;
+use effects::friction::LOAD_DEPENDENT_FRICTION;
+use effects::joint::SPRING;
 use support::{motion, puma560, samples};
 use torque::{
     Command, Controller, Corrected, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, Prediction, TorqueModel,
@@ -51,13 +51,13 @@ fn no_control_step_allocates() {
 fn a_corrected_model_does_not_allocate() {
     let joint = || puma560().joints()[1].name.clone();
     let effects = [
-        Effect::of(&LoadDependentFriction).on(joint()).with("coulomb", 1.0).with("gain", 0.1),
-        Effect::of(&Spring)
+        Effect::of(&LOAD_DEPENDENT_FRICTION).on(joint()).with("coulomb", 1.0).with("gain", 0.1),
+        Effect::of(&SPRING)
             .on(joint())
             .with("stiffness", 1.0)
             .with("rest", 0.0)
             .with("curve", vec![[0.0, 0.0], [1.0, 2.0]]),
-        Effect::of(&ExternalContact).with("start", 0.0).with("duration", 1.0).with("force", [1.0, 2.0, 3.0]),
+        Effect::of(&EXTERNAL_CONTACT).with("start", 0.0).with("duration", 1.0).with("force", [1.0, 2.0, 3.0]),
     ];
     let model = Corrected::new(&puma560(), &effects).expect("they are physical");
     let mut workspace = Workspace::new(6);

@@ -134,7 +134,7 @@ fn training_rows(training: &[RecordedMotion<'_>], samples: usize) -> Vec<(usize,
 mod tests {
     use super::*;
     use effects::Effect;
-    use effects::friction::ViscousFriction;
+    use effects::friction::VISCOUS_FRICTION;
     use recording::statistics::mean_square;
     use std::time::Instant;
     use torque::Corrected;
@@ -188,7 +188,7 @@ mod tests {
     fn friction_is_learned() {
         let arm = puma();
         let viscous =
-            |joint: usize| Effect::of(&ViscousFriction).on(arm.joints()[joint].name.clone()).with("coefficient", 8.0);
+            |joint: usize| Effect::of(&VISCOUS_FRICTION).on(arm.joints()[joint].name.clone()).with("coefficient", 8.0);
         let effects: Vec<Effect> = (0..6).map(viscous).collect();
         let truth = Corrected::new(&arm, &effects).expect("they are physical");
         let training = [Data::new(&truth, 2500, 0.0), Data::new(&truth, 2500, 0.05)];

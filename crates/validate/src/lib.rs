@@ -6,14 +6,14 @@
 //!
 //! ```
 //! use arm::Arm;
-//! use effects::{Effect, friction::CoulombFriction};
+//! use effects::{Effect, friction::COULOMB_FRICTION};
 //! use recording::Recording;
 //! use validate::rollout::{RolloutOptions, rollout};
 //!
 //! let folder = "../../examples/double_pendulum";
 //! let arm = Arm::from_urdf(format!("{folder}/robot.urdf"))?;
 //! let (recording, _) = Recording::read(format!("{folder}/r143339.csv.gz").as_ref())?.regular()?;
-//! let friction = |joint: &str, level: f64| Effect::of(&CoulombFriction).on(joint).with("level", level);
+//! let friction = |joint: &str, level: f64| Effect::of(&COULOMB_FRICTION).on(joint).with("level", level);
 //! let found = [friction("joint1", 0.2), friction("joint2", 0.18)];
 //! let compared = rollout(&arm, &[], &found, &recording, &RolloutOptions::default())?;
 //! assert!(compared.joints[0].augmented_rms_rad < 0.5 * compared.joints[0].nominal_rms_rad);

@@ -14,7 +14,7 @@ mod variant;
 use arm::Arm;
 use diagnosis::JointRollout;
 use effects::Effect;
-use effects::arm::Payload;
+use effects::arm::PAYLOAD;
 use recording::RegularRecording;
 use recording::statistics::mean_square;
 
@@ -136,7 +136,7 @@ pub fn rollout(
         for start in &starts {
             // A payload that is picked up within a window is not simulated in that window.
             let time = recording.time(start.tick);
-            let is_there = |effect: &&Effect| !effect.is(&Payload) || effect.onset().is_none_or(|onset| onset <= time);
+            let is_there = |effect: &&Effect| !effect.is(&PAYLOAD) || effect.onset().is_none_or(|onset| onset <= time);
             let now: Vec<Effect> = effects.iter().filter(is_there).cloned().collect();
             if now != acting {
                 variant = Variant::new(which, arm, &now, &course)?;

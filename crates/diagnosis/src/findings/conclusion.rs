@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use arm::{Arm, Joint};
 use effects::Effect;
-use effects::drive::JointElasticity;
+use effects::drive::JOINT_ELASTICITY;
 
 use super::found::findings;
 use super::inertials::{Inertials, inertials, leave_out_single_links};
@@ -73,7 +73,7 @@ impl Conclusion {
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
-            others.splice(0..0, dual_sensor::findings(data, inputs, |joint| last.names(&JointElasticity, joint)));
+            others.splice(0..0, dual_sensor::findings(data, inputs, |joint| last.names(&JOINT_ELASTICITY, joint)));
             others.extend(transients.contact.clone());
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
@@ -302,7 +302,7 @@ fn without_known(data: &Data, options: &Options, findings: &mut Vec<(Finding, Op
 
 #[cfg(test)]
 mod tests {
-    use effects::drive::JointElasticity;
+    use effects::drive::JOINT_ELASTICITY;
 
     use super::*;
 
@@ -316,7 +316,7 @@ mod tests {
             would_be_seen_below: BTreeMap::new(),
         };
         let list = vec![entry("joint_elasticity", "a"), entry("joint_elasticity", "b"), entry("backlash", "a")];
-        let finding = Finding::of(Effect::of(&JointElasticity).on("a".to_owned()));
+        let finding = Finding::of(Effect::of(&JOINT_ELASTICITY).on("a".to_owned()));
         let remaining = not_named(list, &[(finding, None)]);
         let remaining: Vec<_> = remaining.iter().map(|entry| (entry.effect, entry.joint.as_deref())).collect();
         assert_eq!(remaining, [("joint_elasticity", Some("b")), ("backlash", Some("a"))]);

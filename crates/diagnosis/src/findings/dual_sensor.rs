@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use effects::drive::JointElasticity;
-use effects::friction::{CoulombFriction, ViscousFriction};
+use effects::drive::JOINT_ELASTICITY;
+use effects::friction::{COULOMB_FRICTION, VISCOUS_FRICTION};
 use effects::{Effect, Quantity};
 use nalgebra::{DMatrix, DVector};
 
@@ -183,7 +183,7 @@ fn deflection(data: &Data, joint: usize, inputs: &[Input<'_>]) -> Option<Finding
         unit,
     };
     let name = data.arm.joints()[joint].name.clone();
-    let effect = Effect::of(&JointElasticity).on(name.clone());
+    let effect = Effect::of(&JOINT_ELASTICITY).on(name.clone());
     let effect = effect.with("stiffness", stiffness.value).with("damping", 0.0);
     let gain = result.held_out.map(|explained| 1.0 - (1.0 - explained).max(0.0).sqrt());
     Some(finding(effect, &name, BTreeMap::from([("stiffness", stiffness)]), total / range, gain, BY_SECOND_ENCODER))
@@ -228,14 +228,14 @@ fn between_current_and_sensor(data: &Data, joint: usize, inputs: &[Input<'_>]) -
     let mut list = Vec::new();
     if result.coefficients[0] > 0.0 && result.is_clear(0) {
         let level = result.parameter(0, Quantity::Torque.unit(kind));
-        let effect = Effect::of(&CoulombFriction).on(name.clone());
+        let effect = Effect::of(&COULOMB_FRICTION).on(name.clone());
         let effect = effect.with("level", level.value);
         let share = level.value / torque;
         list.push(finding(effect, &name, BTreeMap::from([("level", level)]), share, gain, place));
     }
     if result.coefficients[1] > 0.0 && result.is_clear(1) {
         let coefficient = result.parameter(1, Quantity::Damping.unit(kind));
-        let effect = Effect::of(&ViscousFriction).on(name.clone());
+        let effect = Effect::of(&VISCOUS_FRICTION).on(name.clone());
         let effect = effect.with("coefficient", coefficient.value);
         let share = coefficient.value * data.scales.speed[joint] / torque;
         list.push(finding(effect, &name, BTreeMap::from([("coefficient", coefficient)]), share, gain, place));

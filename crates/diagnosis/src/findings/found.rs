@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use effects::Acts;
-use effects::arm::{InertialParameters, InertialScale};
+use effects::arm::{INERTIAL_PARAMETERS, INERTIAL_SCALE};
 use effects::laws::ACCELERATION;
-use effects::sensor::TorqueScale;
+use effects::sensor::TORQUE_SCALE;
 
 use crate::data::Data;
 use crate::findings::other_friction::{possible_beside, widen};
@@ -64,12 +64,12 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let over_one_joint = OnOneJoint::of(study, &last.judged.named, member.candidate).map(|one| one.margin);
     let evidence = over_links.into_iter().chain(over_one_joint).fold(member.evidence, f64::min);
     let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
-    let as_links = is_doubtful.then(|| (Hypothesis::of(&InertialParameters), None));
+    let as_links = is_doubtful.then(|| (Hypothesis::of(&INERTIAL_PARAMETERS), None));
     // Factors on the masses stand for the torque constants of the other joints.
-    let is_constant = candidate.hypothesis.is(&TorqueScale) && study.always_acts(member.candidate);
+    let is_constant = candidate.hypothesis.is(&TORQUE_SCALE) && study.always_acts(member.candidate);
     let alike = torque_constants::alike(study, &last.judged.named);
     let of_others = is_constant && candidate.joint.is_some_and(|joint| alike.contains(&joint));
-    let as_masses = of_others.then(|| (Hypothesis::of(&InertialScale), None));
+    let as_masses = of_others.then(|| (Hypothesis::of(&INERTIAL_SCALE), None));
     let change = change(last, member.candidate);
     let mut list = Vec::new();
     for (k, mut named) in name(study, &last.resampled, member.candidate).into_iter().enumerate() {
@@ -190,8 +190,8 @@ fn place(last: &FinalFit, candidate: &Candidate) -> Place {
         return Place { time: vec![window], ..Place::default() };
     }
     let joint = &arm.joints()[candidate.joint.unwrap_or(0)];
-    let kind = candidate.hypothesis.kind.get();
-    Place { state: kind.region(&candidate.terms(table), joint.kind), ..Place::default() }
+    let region = candidate.hypothesis.spec().region;
+    Place { state: region(&candidate.terms(table), joint.kind), ..Place::default() }
 }
 
 #[cfg(test)]

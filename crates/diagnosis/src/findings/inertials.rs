@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use arm::Inertia;
-use effects::arm::{INERTIAL_PARAMETER, InertialParameters, body};
-use effects::{Effect, EffectKind};
+use effects::Effect;
+use effects::arm::{INERTIAL_PARAMETER, INERTIAL_PARAMETERS, body, link_effect};
 
 use crate::regression::bodies::{PER_LINK, physical};
 use crate::report::{Confusable, Finding, LinkInertials, Parameter, Unexplained};
@@ -43,7 +43,7 @@ pub fn leave_out_single_links(
         let mut residuals = unexplained.iter();
         let beside = residuals.find(|residual| lasts(residual) || finding.share_by_joint.contains_key(&residual.joint));
         match (&finding.joint, beside) {
-            (Some(link), Some(residual)) if finding.effect == InertialParameters.spec().name => {
+            (Some(link), Some(residual)) if finding.effect == INERTIAL_PARAMETERS.name => {
                 left_out.push(format!("of the link after {link} (beside {})", residual.joint));
                 false
             }
@@ -95,7 +95,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let own = |draw: &[f64]| body(&physical(of, LEAST_BODY_RADIUS, &read(draw)));
         let estimate = own(&resampled.estimate);
         let name = data.arm.joints()[link].name.clone();
-        list.effects.push(InertialParameters::effect(name.clone(), &estimate));
+        list.effects.push(link_effect(name.clone(), &estimate));
         let columns: Vec<usize> = places.iter().flatten().map(|&place| resampled.columns[place]).collect();
         let values: Vec<f64> = places.iter().flatten().map(|&place| resampled.estimate[place]).collect();
         for (joint, share) in shares[link].iter_mut().enumerate() {
@@ -175,7 +175,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let margin = lost.chain(forms.iter().map(|(beyond, _)| *beyond)).fold(score.min(constants), f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
-            effect: InertialParameters.spec().name,
+            effect: INERTIAL_PARAMETERS.name,
             joint: Some(data.arm.joints()[other].name.clone()),
         });
         let effects = forms.into_iter().map(|(_, form)| confusable(form));
@@ -243,7 +243,7 @@ mod tests {
         Finding {
             joint: joint.map(str::to_owned),
             share_by_joint: acts_on.iter().map(|&joint| (joint.to_owned(), 0.1)).collect(),
-            ..Finding::of(InertialParameters::effect("a".to_owned(), &body))
+            ..Finding::of(link_effect("a".to_owned(), &body))
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use effects::arm::Payload;
+use effects::arm::PAYLOAD;
 use effects::{Detectability, Effect, Kind};
 use rayon::prelude::*;
 
@@ -145,7 +145,7 @@ fn on_arm(last: &FinalFit) -> Vec<NotObservable> {
         }
         let (table, arm) = (&study.table, &study.data.arm);
         // A payload that the last joints do not feel is a part of a link, and one on a short arm is a part of all links.
-        let is_payload = forms.iter().any(|form| form.hypothesis.is(&Payload));
+        let is_payload = forms.iter().any(|form| form.hypothesis.is(&PAYLOAD));
         let may_be_links = study.data.arm.dof() <= FEW_JOINTS || !study.are_felt_at_the_end(&[column], &[1.0]);
         let is_beyond = share > BEYOND
             || is_beyond_a_factor(candidate, size)
@@ -195,8 +195,8 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
             Detectability::Limit { because } => add(because, None, Some(largest_torque(&study.data, joint))),
             Detectability::Sized { because, if_none, is_seen_below } => {
                 let may_be_named = |size: f64| {
-                    let effect = Effect::of(kind.get()).with(key, size);
-                    kind.get().is_certain(&effect, &|_| None, 0.0)
+                    let effect = Effect::of(kind.spec()).with(key, size);
+                    (kind.spec().is_certain)(&effect, &|_| None, 0.0)
                 };
                 // Sizes in ascending order.
                 let mut sizes: Vec<(f64, bool)> = of(&study.candidates, kind, joint)

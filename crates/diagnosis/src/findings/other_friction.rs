@@ -1,6 +1,6 @@
 //! The sizes of friction beside other friction of the joint that is not named.
 
-use effects::friction::{QuadraticDrag, TURBULENT, ViscousFriction};
+use effects::friction::{QUADRATIC_DRAG, TURBULENT, VISCOUS_FRICTION};
 use effects::{Acts, Term};
 
 use crate::report::{Finding, Parameter};
@@ -15,7 +15,7 @@ pub fn possible_beside(last: &FinalFit, of: &[(&Member, Standing)]) -> Vec<Rival
     let study = &last.study;
     let is_plain = |member: &Member| study.candidates[member.candidate].hypothesis.is_plain_friction();
     let plain = of.iter().filter(|(member, _)| is_plain(member));
-    let drag = Hypothesis::of(&QuadraticDrag);
+    let drag = Hypothesis::of(&QUADRATIC_DRAG);
     let drags = plain.flat_map(|(member, standing)| {
         let joint = study.candidates[member.candidate].joint;
         let rivals = standing.rivals.iter().copied();
@@ -30,7 +30,7 @@ pub fn possible_beside(last: &FinalFit, of: &[(&Member, Standing)]) -> Vec<Rival
 pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, member: &Member, beside: &[Rival]) {
     let study = &last.study;
     let candidate = &study.candidates[member.candidate];
-    let is_drag = candidate.hypothesis.is(&QuadraticDrag);
+    let is_drag = candidate.hypothesis.is(&QUADRATIC_DRAG);
     let (true, [own]) = (is_drag || candidate.hypothesis.is_plain_friction(), &candidate.columns[..]) else {
         return;
     };
@@ -56,7 +56,7 @@ pub fn widen(finding: &mut Finding, last: &FinalFit, problem: &Problem<'_>, memb
     let is_other = |index: &usize| {
         let other = study.candidates[*index].hypothesis;
         let is_its_like = match is_drag {
-            true => other.is(&ViscousFriction),
+            true => other.is(&VISCOUS_FRICTION),
             false => other.is_plain_friction() && other != candidate.hypothesis,
         };
         is_its_like && is_free(*index)

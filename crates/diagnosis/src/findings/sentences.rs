@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use arm::Arm;
-use effects::arm::InertialParameters;
+use effects::arm::INERTIAL_PARAMETERS;
 use effects::{Effect, Regressor};
 
 use crate::data::Data;
@@ -53,14 +53,14 @@ pub enum Written {
 
 /// The finding's effect as a noun phrase with its parameters; `quantity` formats a parameter of this name.
 pub fn described(finding: &Finding, quantity: &dyn Fn(&str, &Parameter, Written) -> String) -> String {
-    if finding.as_effect.is(&InertialParameters) && finding.joint.is_none() {
+    if finding.as_effect.is(&INERTIAL_PARAMETERS) && finding.joint.is_none() {
         let relative = finding.parameters.get("relative");
         return format!(
             "masses, centres of mass and inertias of most links that differ from the URDF by about {} % of their size",
             relative.map_or_else(String::new, |relative| quantity("relative", relative, Written::Percent))
         );
     }
-    let mut parts = finding.as_effect.kind().get().sentence(&finding.as_effect).split('{');
+    let mut parts = finding.as_effect.sentence().split('{');
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('}').unwrap_or((part, ""));
@@ -80,7 +80,7 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(&str, &Parameter, Written)
     let form_differs = had_other_form(&finding.as_effect);
     let mut text = match (finding.change, finding.parameters.get("onset")) {
         (Some(Change::Added), _) if form_differs => format!("{text}, of another form in the recordings from before"),
-        (Some(Change::Added), _) => format!("{text}, {}", finding.as_effect.kind().get().before_it(&finding.as_effect)),
+        (Some(Change::Added), _) => format!("{text}, {}", (finding.as_effect.spec().before_it)(&finding.as_effect)),
         (Some(Change::Increased), _) => format!("{text}, in addition to that in the recordings from before"),
         (Some(Change::Removed), _) => format!("{text}, in the recordings from before only"),
         (Some(Change::Reduced), _) => format!("{text} less than in the recordings from before"),
@@ -96,13 +96,13 @@ pub fn described(finding: &Finding, quantity: &dyn Fn(&str, &Parameter, Written)
 /// Whether the recordings do not determine the size of a finding: its interval contains the value without effect. The name may be
 /// certain nevertheless.
 pub fn is_undetermined(finding: &Finding) -> bool {
-    may_be_nothing(finding.as_effect.kind().get().spec(), &finding.parameters)
+    may_be_nothing(finding.as_effect.spec(), &finding.parameters)
 }
 
 /// Whether an effect states a level of dry friction that was there before it changed.
 fn had_other_form(effect: &Effect) -> bool {
     let generalises = effect.spec().generalises.is_some();
-    generalises && effect.kind().get().dry_friction(effect).is_some_and(|level| level > 0.0)
+    generalises && (effect.spec().dry_friction)(effect).is_some_and(|level| level > 0.0)
 }
 
 /// A ratio of standard deviations in words; a ratio above one is not given as a percentage.
@@ -298,14 +298,14 @@ pub fn without_known(joint: &str, error: f64, identified: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use effects::sensor::TorqueScale;
+    use effects::sensor::TORQUE_SCALE;
 
     use super::*;
 
     #[test]
     fn the_same_change_on_several_joints_is_told_once() {
         let changed = |joint: &str, factor: f64| {
-            let effect = Effect::of(&TorqueScale).on(joint).with("factor", factor);
+            let effect = Effect::of(&TORQUE_SCALE).on(joint).with("factor", factor);
             let parameter = Parameter { value: factor, ci95: [factor - 0.02, factor + 0.02], unit: "1" };
             Finding {
                 change: Some(Change::Added),

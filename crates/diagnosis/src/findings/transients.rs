@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use effects::Effect;
-use effects::arm::ExternalContact;
+use effects::arm::EXTERNAL_CONTACT;
 use nalgebra::Vector3;
 
 use crate::data::Data;
@@ -225,7 +225,7 @@ impl Residuals<'_> {
                 (data.arm.joints()[joint].name.clone(), data.share(joint, rms))
             })
             .collect();
-        let effect = Effect::of(&ExternalContact)
+        let effect = Effect::of(&EXTERNAL_CONTACT)
             .with("start", from)
             .with("duration", to - from)
             .with("force", [force.x, force.y, force.z]);

@@ -1,8 +1,7 @@
 //! The experiment to make where no motion distinguishes two effects.
 
-use effects::EffectKind;
-use effects::arm::{LinkInertialError, Payload};
-use effects::sensor::TorqueScale;
+use effects::arm::{LINK_INERTIAL_ERROR, PAYLOAD};
+use effects::sensor::TORQUE_SCALE;
 
 use crate::report::{Confusable, NotSeparated, Obstacle};
 use crate::thresholds::{ALIAS, NEARLY_NATS};
@@ -70,14 +69,14 @@ pub fn barred(
 /// Whether an alternative multiplies masses or torques, as wrong links and torque constants do. Source: beside these, 16 of 44 predictions
 /// for torque scales in the place of rotor inertias came true in `prove`, seed 28113001, and 18 of the 23 others.
 pub fn resembles_links(rival: &str) -> bool {
-    effects::spec(rival).is_some_and(|spec| spec.is_wrong_mass || spec.name == TorqueScale.spec().name)
+    effects::spec(rival).is_some_and(|spec| spec.is_wrong_mass || spec.name == TORQUE_SCALE.name)
 }
 
 /// The confusion of `finding` with `rival`, for which no motion is predicted. `last` is the last joint of the arm.
 pub fn unpredicted(finding: Confusable, rival: Confusable, last: Option<&str>) -> NotSeparated {
     // A payload is a change of the last link, and a link that is wrong by a factor is a special case of a link that is wrong.
-    let is_of_last = finding.effect == Payload.spec().name && rival.joint.as_deref() == last;
-    let is_special = finding.effect == LinkInertialError.spec().name && finding.joint == rival.joint;
+    let is_of_last = finding.effect == PAYLOAD.name && rival.joint.as_deref() == last;
+    let is_special = finding.effect == LINK_INERTIAL_ERROR.name && finding.joint == rival.joint;
     let (kind, because) = if rival.joint.is_some() && (is_of_last || is_special) {
         let because = "the alternative contains the finding, with the same torque in every motion".to_owned();
         (Obstacle::SameTorque, because)

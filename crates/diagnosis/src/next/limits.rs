@@ -2,7 +2,7 @@
 
 use arm::Arm;
 use effects::Effect;
-use effects::drive::TorqueSaturation;
+use effects::drive::TORQUE_SATURATION;
 use torque::{Corrected, Motion, Prediction, Reference, TorqueError, Workspace};
 
 use crate::data::Data;
@@ -35,7 +35,7 @@ impl Limits {
     /// # Errors
     /// If the effects cannot be added to the model.
     pub fn new(data: &Data, (arm, effects): (&Arm, &[Effect]), explain: bool) -> Result<Self, TorqueError> {
-        let is_limit = |effect: &&Effect| effect.is(&TorqueSaturation);
+        let is_limit = |effect: &&Effect| effect.is(&TORQUE_SATURATION);
         let (found, others): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(is_limit);
         let with = |effects: Vec<&Effect>| Corrected::new(arm, &effects.into_iter().cloned().collect::<Vec<_>>());
         let (found, model) = (with(found)?, with(others)?);

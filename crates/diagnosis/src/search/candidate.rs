@@ -1,7 +1,7 @@
 //! Candidates that may explain a residual: effects of the catalogue and unmodelled forms, each with its columns.
 
 use effects::arm::contact_window;
-use effects::{EffectKind, Grounds, Kind, Spec, Term};
+use effects::{Grounds, Kind, Spec, Term};
 
 use crate::regression::table::Table;
 use crate::thresholds::Thresholds;
@@ -17,12 +17,12 @@ pub struct Hypothesis {
 
 impl Hypothesis {
     /// A hypothesis that depends on no other joint.
-    pub fn of(kind: &'static dyn EffectKind) -> Self {
+    pub fn of(kind: &'static Spec) -> Self {
         Self { kind: Kind::of(kind), other: None }
     }
 
     /// Whether it is of this kind.
-    pub fn is(self, kind: &'static dyn EffectKind) -> bool {
+    pub fn is(self, kind: &'static Spec) -> bool {
         self.kind.is(kind)
     }
 
@@ -93,7 +93,7 @@ impl Candidate {
 
 /// The candidates known from the beginning, with the terms of their columns, in the order of their turns.
 pub fn catalogue(grounds: &Grounds<'_>) -> Vec<(Hypothesis, Option<usize>, Vec<Term>)> {
-    let of = |kind: Kind| kind.get().forms(grounds).into_iter().map(move |form| (kind, form));
+    let of = |kind: Kind| (kind.spec().forms)(grounds).into_iter().map(move |form| (kind, form));
     let mut forms: Vec<_> = Kind::all().flat_map(of).collect();
     forms.sort_by_key(|(_, form)| form.turn.key(form.joint, form.other));
     let candidate = |(kind, form): (Kind, effects::Form)| {

@@ -1,7 +1,7 @@
 //! What connects a drive to its link: a gap or a spring in place of a delay.
 
-use effects::EffectKind;
-use effects::drive::{ActuationDelay, Backlash, JointElasticity};
+use effects::Spec;
+use effects::drive::{ACTUATION_DELAY, BACKLASH, JOINT_ELASTICITY};
 use rayon::prelude::*;
 
 use crate::search::candidate::{Candidate, Hypothesis};
@@ -11,18 +11,18 @@ use crate::search::study::Study;
 use crate::thresholds::SWAP_GAIN;
 
 /// The effects that may stand in place of a delay.
-const CONNECTIONS: [&dyn EffectKind; 2] = [&Backlash, &JointElasticity];
+const CONNECTIONS: [&Spec; 2] = [&BACKLASH, &JOINT_ELASTICITY];
 
 /// `selected` with a gap or a spring, at its best sizes, in place of each delay that explains less. A delay has one size, and is at its
 /// best at once; a gap explains little until its sizes are found, and is excluded by the delay.
 pub fn in_place_of_delays(study: &mut Study, mut selected: Selection) -> Selection {
     for delay in selected.set.clone() {
         let Candidate { hypothesis, joint, .. } = study.candidates[delay];
-        if !hypothesis.is(&ActuationDelay) || !study.always_acts(delay) {
+        if !hypothesis.is(&ACTUATION_DELAY) || !study.always_acts(delay) {
             continue;
         }
         let trials: Vec<Selection> =
-            CONNECTIONS.iter().filter_map(|kind| sized(study, &selected, delay, *kind, joint)).collect();
+            CONNECTIONS.iter().filter_map(|kind| sized(study, &selected, delay, kind, joint)).collect();
         let best = trials.into_iter().min_by(|a, b| a.score.total_cmp(&b.score));
         if let Some(best) = best.filter(|best| best.score < selected.score - SWAP_GAIN) {
             study.note("explains more in its place", &selected, &best);
@@ -37,7 +37,7 @@ fn sized(
     study: &mut Study,
     selected: &Selection,
     member: usize,
-    kind: &'static dyn EffectKind,
+    kind: &'static Spec,
     joint: Option<usize>,
 ) -> Option<Selection> {
     let hypothesis = Hypothesis::of(kind);

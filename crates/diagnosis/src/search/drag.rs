@@ -1,7 +1,7 @@
 //! Viscous friction beside drag.
 
 use effects::Term;
-use effects::friction::{DRAG, QuadraticDrag, TURBULENT, ViscousFriction};
+use effects::friction::{DRAG, QUADRATIC_DRAG, TURBULENT, VISCOUS_FRICTION};
 
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Selection;
@@ -13,13 +13,13 @@ pub fn beside_viscous_friction(study: &mut Study, mut selected: Selection) -> Se
     for drag in selected.set.clone() {
         let Candidate { hypothesis, joint, .. } = study.candidates[drag];
         let is_less = |term: &Term| term.is(&DRAG) && term.sizes[0] < TURBULENT;
-        let (true, Some(joint)) = (hypothesis.is(&QuadraticDrag), joint) else {
+        let (true, Some(joint)) = (hypothesis.is(&QUADRATIC_DRAG), joint) else {
             continue;
         };
         if !study.terms(drag).iter().all(is_less) {
             continue;
         }
-        let viscous = Hypothesis::of(&ViscousFriction);
+        let viscous = Hypothesis::of(&VISCOUS_FRICTION);
         let is_viscous = |&c: &usize| {
             let other = &study.candidates[c];
             other.hypothesis == viscous && other.joint == Some(joint) && study.always_acts(c)

@@ -78,7 +78,7 @@ pub fn is_possible(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -
 
 /// Whether the effect of `candidate` can exist at the coefficients of `fit`.
 fn is_physical(candidate: &Candidate, table: &Table, fit: &Fit, arm: &Arm) -> bool {
-    candidate.hypothesis.kind.get().is_possible(&InFit { candidate, table, fit, arm })
+    (candidate.hypothesis.spec().is_possible)(&InFit { candidate, table, fit, arm })
 }
 
 /// Whether no effect of `candidate` has a coefficient of ±`size` on `column`, although a smaller one is possible: one a thousandth

@@ -25,24 +25,24 @@ impl Scope {
 
 #[cfg(test)]
 mod tests {
-    use effects::EffectKind;
-    use effects::drive::Backlash;
-    use effects::friction::CoulombFriction;
-    use effects::sensor::TorqueScale;
+    use effects::Spec;
+    use effects::drive::BACKLASH;
+    use effects::friction::COULOMB_FRICTION;
+    use effects::sensor::TORQUE_SCALE;
 
     use super::*;
     use crate::thresholds::Thresholds;
 
     #[test]
     fn what_may_be_named() {
-        let scope = Scope { is_open: vec![true, false], names: vec![(Hypothesis::of(&TorqueScale), Some(1))] };
-        let may_be = |kind: &'static dyn EffectKind, joint: Option<usize>| {
+        let scope = Scope { is_open: vec![true, false], names: vec![(Hypothesis::of(&TORQUE_SCALE), Some(1))] };
+        let may_be = |kind: &'static Spec, joint: Option<usize>| {
             scope.contains(&Candidate::new(Hypothesis::of(kind), joint, Vec::new(), &Thresholds::default()))
         };
-        assert!(may_be(&Backlash, Some(0)) && may_be(&TorqueScale, Some(0)), "on the open joint");
-        assert!(!may_be(&Backlash, Some(1)), "on the other joint");
-        assert!(may_be(&TorqueScale, Some(1)), "an earlier name");
-        assert!(may_be(&CoulombFriction, Some(1)), "a baseline effect");
-        assert!(may_be(&Backlash, None), "on the whole arm");
+        assert!(may_be(&BACKLASH, Some(0)) && may_be(&TORQUE_SCALE, Some(0)), "on the open joint");
+        assert!(!may_be(&BACKLASH, Some(1)), "on the other joint");
+        assert!(may_be(&TORQUE_SCALE, Some(1)), "an earlier name");
+        assert!(may_be(&COULOMB_FRICTION, Some(1)), "a baseline effect");
+        assert!(may_be(&BACKLASH, None), "on the whole arm");
     }
 }

@@ -1,9 +1,9 @@
 //! Suggests candidates from the residual of a selection: contacts, ripples, sinusoids in time, onsets.
 
-use effects::arm::{ExternalContact, Payload, contact_columns, contact_window};
-use effects::drive::{TorqueRipple, ripple_columns};
-use effects::unmodelled::{Periodic, periodic_columns};
-use effects::{EffectKind, Term};
+use effects::arm::{EXTERNAL_CONTACT, PAYLOAD, contact_columns, contact_window};
+use effects::drive::{TORQUE_RIPPLE, ripple_columns};
+use effects::unmodelled::{PERIODIC, periodic_columns};
+use effects::{Spec, Term};
 use rayon::prelude::*;
 
 use crate::search::candidate::Hypothesis;
@@ -48,7 +48,7 @@ impl Study {
                 )
             })
             .collect();
-        let of = |kind: &'static dyn EffectKind| Hypothesis::of(kind);
+        let of = |kind: &'static Spec| Hypothesis::of(kind);
         let mut new = scan::onsets(&self.data, &self.table, &selected.fit.weights, &times, &residual);
         // A part of a load that was put down, which the background has, would be a payload.
         let until = self.own_load.as_ref().and_then(|load| load.until);
@@ -56,18 +56,18 @@ impl Study {
             let onset = term.onset();
             onset.zip(until).is_some_and(|(onset, until)| (onset - until).abs() < OF_THE_SAME_LOAD)
         };
-        new.retain(|(hypothesis, _, terms)| !(hypothesis.is(&Payload) && terms.iter().any(is_of_it)));
+        new.retain(|(hypothesis, _, terms)| !(hypothesis.is(&PAYLOAD) && terms.iter().any(is_of_it)));
         for (from, to) in windows {
             for round in [false, true] {
-                new.push((of(&ExternalContact), None, contact_columns(from, to, round)));
+                new.push((of(&EXTERNAL_CONTACT), None, contact_columns(from, to, round)));
             }
         }
         for (joint, (ripples, waves)) in found.into_iter().enumerate() {
             for periods in ripples {
-                new.push((of(&TorqueRipple), Some(joint), ripple_columns(joint, periods)));
+                new.push((of(&TORQUE_RIPPLE), Some(joint), ripple_columns(joint, periods)));
             }
             for omega in waves {
-                new.push((of(&Periodic), Some(joint), periodic_columns(joint, omega)));
+                new.push((of(&PERIODIC), Some(joint), periodic_columns(joint, omega)));
             }
         }
         let missing: Vec<Term> = new

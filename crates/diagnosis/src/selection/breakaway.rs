@@ -1,6 +1,6 @@
 //! Stribeck friction that only the rows near reversals show.
 
-use effects::friction::{CoulombFriction, StribeckFriction, stribeck_velocity};
+use effects::friction::{COULOMB_FRICTION, STRIBECK_FRICTION, stribeck_velocity};
 
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::{Problem, Selection};
@@ -12,14 +12,14 @@ use crate::thresholds::{LEAST_AT_REVERSALS, SLOWEST_AT_REVERSALS};
 /// Names Stribeck friction in place of Coulomb friction, if the rows of the final fit require it. The search does without the rows near
 /// reversals, on which the friction of a joint that turns quickly is larger, if it falls at all.
 pub fn at_reversals(study: &mut Study, judged: &mut Judged) {
-    let coulomb = Hypothesis::of(&CoulombFriction);
+    let coulomb = Hypothesis::of(&COULOMB_FRICTION);
     let is_plain = |study: &Study, c: usize| study.candidates[c].hypothesis == coulomb && study.always_acts(c);
     let before: Vec<usize> = judged.named.set.iter().copied().filter(|&c| is_plain(study, c)).collect();
     for friction in before {
         let Some(joint) = study.candidates[friction].joint else {
             continue;
         };
-        let stribeck = Hypothesis::of(&StribeckFriction);
+        let stribeck = Hypothesis::of(&STRIBECK_FRICTION);
         let is_form = |candidate: &Candidate| candidate.hypothesis == stribeck && candidate.joint == Some(joint);
         let always_acts = |&c: &usize| is_form(&study.candidates[c]) && study.always_acts(c);
         let forms: Vec<usize> = study.allowed().into_iter().filter(always_acts).collect();

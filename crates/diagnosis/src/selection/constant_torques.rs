@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use arm::Joint;
 use effects::background::OFFSET;
-use effects::friction::FrictionAsymmetry;
-use effects::sensor::TorqueOffset;
+use effects::friction::FRICTION_ASYMMETRY;
+use effects::sensor::TORQUE_OFFSET;
 use effects::{Effect, Quantity, Term};
 
 use crate::regression::strengths::Strengths;
@@ -21,7 +21,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// The joint whose constant torque a candidate names, for all times.
 pub fn names(study: &Study, candidate: usize) -> Option<usize> {
     let hypothesis = study.candidates[candidate].hypothesis;
-    let is_constant = hypothesis.is(&TorqueOffset) || hypothesis.is(&FrictionAsymmetry);
+    let is_constant = hypothesis.is(&TORQUE_OFFSET) || hypothesis.is(&FRICTION_ASYMMETRY);
     let always = study.always_acts(candidate);
     study.candidates[candidate].joint.filter(|_| is_constant && always)
 }
@@ -103,5 +103,5 @@ pub fn reported(study: &Study, corrections: &BTreeMap<String, Parameter>) -> BTr
 
 /// The effect that corrects the torque model by a constant.
 pub fn effect((joint, offset): (&String, &Parameter)) -> Effect {
-    Effect::of(&TorqueOffset).on(joint.clone()).with("offset", offset.value)
+    Effect::of(&TORQUE_OFFSET).on(joint.clone()).with("offset", offset.value)
 }

@@ -7,9 +7,9 @@
 
 use effects::Term;
 use effects::background::{OWN_CONSTANT, OWN_FRICTION};
-use effects::friction::{CoulombFriction, FrictionAsymmetry};
+use effects::friction::{COULOMB_FRICTION, FRICTION_ASYMMETRY};
 use effects::laws::{ABS_SIGN, ONE, SIGN};
-use effects::sensor::TorqueOffset;
+use effects::sensor::TORQUE_OFFSET;
 use nalgebra::{DMatrix, DVector};
 
 use crate::search::candidate::Hypothesis;
@@ -35,7 +35,7 @@ pub fn decide(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         if nats.abs() < DIRECTION_NATS || nats > 0.0 && !constants.oppose_the_motion() {
             continue;
         }
-        let is_friction = study.candidates[member].hypothesis.is(&FrictionAsymmetry);
+        let is_friction = study.candidates[member].hypothesis.is(&FRICTION_ASYMMETRY);
         if is_friction == (nats > 0.0) {
             // An offset that keeps its name was not in doubt.
             if is_friction {
@@ -118,9 +118,9 @@ impl Constants {
 /// Replaces the name of `member` by asymmetric friction, or by an offset; returns whether that name is allowed.
 fn rename(study: &mut Study, judged: &mut Judged, member: usize, joint: usize, is_friction: bool) -> bool {
     let [friction, offset, dry] = [
-        (Hypothesis::of(&FrictionAsymmetry), vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)]),
-        (Hypothesis::of(&TorqueOffset), vec![Term::on(&ONE, joint)]),
-        (Hypothesis::of(&CoulombFriction), vec![Term::on(&SIGN, joint)]),
+        (Hypothesis::of(&FRICTION_ASYMMETRY), vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)]),
+        (Hypothesis::of(&TORQUE_OFFSET), vec![Term::on(&ONE, joint)]),
+        (Hypothesis::of(&COULOMB_FRICTION), vec![Term::on(&SIGN, joint)]),
     ]
     .map(|(hypothesis, terms)| study.add(hypothesis, Some(joint), terms));
     let new = if is_friction { friction } else { offset };

@@ -1,6 +1,6 @@
 //! The final fit: the named effects are linearised about the arm that contains them, and effects that fail the last tests are removed.
 
-use effects::sensor::{TorqueOffset, TorqueScale};
+use effects::sensor::{TORQUE_OFFSET, TORQUE_SCALE};
 
 use crate::regression::strengths::Strengths;
 use crate::report::JointFit;
@@ -53,7 +53,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                 if why == Unclear::Contradicted {
                     study.refuse(unclear);
                 }
-                if why == Unclear::Residual && study.candidates[unclear].hypothesis.is(&TorqueOffset) {
+                if why == Unclear::Residual && study.candidates[unclear].hypothesis.is(&TORQUE_OFFSET) {
                     // A residual with a mean is predicted better with a constant, whatever causes it.
                     let joint = study.candidates[unclear].joint.filter(|_| study.always_acts(unclear));
                     study.strengths.nameless_offsets.extend(joint);
@@ -209,7 +209,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         // A payload or a factor on the inertial parameters improves the fit whenever the inertial parameters are wrong in any way.
         let is_small = !hypothesis.spec().is_friction && member.share() < LEAST_UNDECIDED;
         let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin_over_single;
-        if (is_small || hypothesis.spec().is_wrong_mass || hypothesis.is(&TorqueScale)) && margin() < UNDECIDED_NATS {
+        if (is_small || hypothesis.spec().is_wrong_mass || hypothesis.is(&TORQUE_SCALE)) && margin() < UNDECIDED_NATS {
             return Some(("another effect explains nearly as much in its place", false));
         }
         let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, member.candidate);

@@ -122,13 +122,13 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
 /// The reason why an effect is refused that is not in the catalogue, with the name that is probably meant (a title is also
 /// understood), or with all names.
 fn no_effect(name: &str) -> String {
-    let names: Vec<String> = CATALOGUE.iter().map(|kind| kind.spec().name.to_owned()).collect();
-    let titled = CATALOGUE.iter().find(|kind| kind.spec().title.eq_ignore_ascii_case(name));
+    let names: Vec<String> = CATALOGUE.iter().map(|spec| spec.name.to_owned()).collect();
+    let titled = CATALOGUE.iter().find(|spec| spec.title.eq_ignore_ascii_case(name));
     let part = name.to_lowercase();
     let mut with_it = names.iter().filter(|known| known.contains(&part));
     // A part of one name only.
     let only_one = with_it.next().filter(|_| !part.is_empty() && with_it.next().is_none());
-    let meant = titled.map(|kind| kind.spec().name).or(only_one.map(String::as_str)).or_else(|| nearest(name, &names));
+    let meant = titled.map(|spec| spec.name).or(only_one.map(String::as_str)).or_else(|| nearest(name, &names));
     match meant {
         Some(meant) => format!("no such effect is in the catalogue; did you mean {meant}?"),
         None => format!("no such effect is in the catalogue, which has {}", names.join(", ")),

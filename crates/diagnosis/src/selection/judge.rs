@@ -1,7 +1,7 @@
 //! Decides which of the selected candidates are named.
 
 use effects::Acts;
-use effects::arm::ExternalContact;
+use effects::arm::EXTERNAL_CONTACT;
 use rayon::prelude::*;
 
 use crate::data::statistics::{moments, rms};
@@ -324,7 +324,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
         };
         // The end of a gap jolts all joints, most of all its own. A contact must stand out on the joint on which it is largest.
         let stands_out =
-            if hypothesis(member).is(&ExternalContact) { stands_out(at) } else { (0..dof).any(stands_out) };
+            if hypothesis(member).is(&EXTERNAL_CONTACT) { stands_out(at) } else { (0..dof).any(stands_out) };
         member.evidence < needed || member.beyond < hypothesis(member).spec().least_beyond_simpler || !stands_out
     };
     (0..members.len())

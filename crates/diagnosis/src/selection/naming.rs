@@ -12,7 +12,7 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::thresholds::{OF_ARM, OF_FORM, SYSTEMATIC};
 use arm::{Arm, Matrix3};
-use effects::{Effect, Estimate, Kind, Law, Size, Spec, Systematic, Term};
+use effects::{Effect, Estimate, Kind, Law, Scope, Size, Spec, Systematic, Term};
 
 /// A named effect with its parameters.
 #[derive(Clone, Debug)]
@@ -183,7 +183,12 @@ impl Reader<'_> {
     /// The effect of a kind with its parameters.
     fn read(&mut self, kind: Kind) -> Option<Named> {
         self.kind = kind;
-        let effect = kind.get().read(self)?;
+        let spec = kind.spec();
+        let effect = match spec.scope {
+            Scope::Joint => Effect::of(spec).on(self.arm().joints()[self.joint()].name.clone()),
+            Scope::Arm => Effect::of(spec),
+        };
+        let effect = (spec.read)(effect, self)?;
         Some(Named {
             other: effect.other().map(str::to_owned),
             effect,
@@ -199,8 +204,7 @@ mod tests {
     /// Every searched effect has a main parameter, so that its name is removed where the interval contains no effect.
     #[test]
     fn an_interval_that_holds_no_effect_is_seen_in_every_effect() {
-        for kind in effects::CATALOGUE {
-            let spec = kind.spec();
+        for spec in effects::CATALOGUE {
             let with = |half: f64| -> BTreeMap<&'static str, Parameter> {
                 let size = |&key: &&'static str| {
                     let neutral = spec.parameter(key).map_or(0.0, |parameter| parameter.neutral);

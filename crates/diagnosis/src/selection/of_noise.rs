@@ -11,8 +11,7 @@ pub fn noise(study: &Study, candidate: &Candidate, joint: usize) -> f64 {
     let data = &study.data;
     let mass = mean(data.rigid.iter().flat_map(|rigid| rigid.link_mass(joint)));
     let term = &study.table.terms[candidate.columns[0]];
-    let kind = candidate.hypothesis.kind.get();
-    let gain = kind.noise_gain(term, mass, data.motions.cutoff);
+    let gain = (candidate.hypothesis.spec().noise_gain)(term, mass, data.motions.cutoff);
     if gain == 0.0 {
         return 0.0;
     }

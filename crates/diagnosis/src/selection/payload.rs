@@ -14,7 +14,7 @@
 //! 9. [`beside_few_links`]: the probability of a payload on an arm of few joints.
 //! 10. [`as_last_link`]: the last link is an alternative of a payload that is named beside wrong links.
 
-use effects::arm::InertialParameters;
+use effects::arm::INERTIAL_PARAMETERS;
 
 use crate::regression::bodies::PER_LINK;
 use crate::search::candidate::Hypothesis;
@@ -66,7 +66,7 @@ pub fn beside_few_links(study: &mut Study, selected: &Selection) -> Option<(usiz
 /// The last link as an alternative of a payload that was always there, if a link is wrong in any case: the inertial parameters of
 /// both have the same torque. Without wrong links, a body at the tool is the likelier of the two.
 pub fn as_last_link(study: &Study, candidate: usize) -> Option<Rival> {
-    let links = Hypothesis::of(&InertialParameters);
+    let links = Hypothesis::of(&INERTIAL_PARAMETERS);
     let is_alike = study.is_payload(candidate) && study.always_acts(candidate) && study.strengths.strongest() > 0.0;
     is_alike.then(|| (links, study.data.arm.dof().checked_sub(1)))
 }

@@ -1,8 +1,8 @@
 //! The alternatives of a finding: other hypotheses, fitted in its place with all other effects refitted.
 
-use effects::arm::InertialParameters;
-use effects::friction::{CoulombFriction, FrictionAsymmetry};
-use effects::sensor::TorqueOffset;
+use effects::arm::INERTIAL_PARAMETERS;
+use effects::friction::{COULOMB_FRICTION, FRICTION_ASYMMETRY};
+use effects::sensor::TORQUE_OFFSET;
 use rayon::prelude::*;
 
 use crate::search::candidate::{Candidate, Hypothesis};
@@ -75,18 +75,18 @@ pub fn beside(study: &Study, selected: &Selection, member: usize) -> Vec<usize> 
 /// depends on the direction. No motion distinguishes the two. `set` is the set [`beside`] the finding.
 pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) -> Option<Rival> {
     let finding = &study.candidates[member];
-    if finding.hypothesis.is(&FrictionAsymmetry) {
-        return Some((Hypothesis::of(&TorqueOffset), finding.joint));
+    if finding.hypothesis.is(&FRICTION_ASYMMETRY) {
+        return Some((Hypothesis::of(&TORQUE_OFFSET), finding.joint));
     }
     let constant = *finding.columns.first()?;
     let is_as_large = |&c: &usize| {
         let other = &study.candidates[c];
-        other.hypothesis.is(&CoulombFriction)
+        other.hypothesis.is(&COULOMB_FRICTION)
             && other.joint == finding.joint
             && selected.fit.coefficient(other.columns[0]) > LEAST_LEVEL * selected.fit.coefficient(constant).abs()
     };
-    let has_alias = finding.hypothesis.is(&TorqueOffset) && set.iter().any(is_as_large);
-    has_alias.then_some((Hypothesis::of(&FrictionAsymmetry), finding.joint))
+    let has_alias = finding.hypothesis.is(&TORQUE_OFFSET) && set.iter().any(is_as_large);
+    has_alias.then_some((Hypothesis::of(&FRICTION_ASYMMETRY), finding.joint))
 }
 
 /// Tries every other hypothesis in the place of `member`.
@@ -163,7 +163,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     let alias = alias.filter(|_| decided.is_none_or(|nats| nats < NEARLY_NATS));
     let mut as_likely = None;
     if finding.hypothesis.spec().may_be_inertial {
-        let hypothesis = Hypothesis::of(&InertialParameters);
+        let hypothesis = Hypothesis::of(&INERTIAL_PARAMETERS);
         let trials = study.in_the_background(&set, selected);
         let results_of = |(link, next): (Option<usize>, Selection)| {
             (next.fit.loss - selected.fit.loss, next.score - selected.score, hypothesis, link)

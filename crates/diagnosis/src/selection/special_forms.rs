@@ -2,7 +2,7 @@
 //! the correction of all links does without them.
 
 use effects::Acts;
-use effects::drive::RotorInertia;
+use effects::drive::ROTOR_INERTIA;
 use rayon::prelude::*;
 
 use crate::regression::strengths::Strengths;
@@ -73,7 +73,7 @@ fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Se
         let candidate = &study.candidates[c];
         // A rotor adds to the inertia of its link about the joint's axis, which is all that a first link on a vertical axis shows.
         candidate.hypothesis.name().is_some()
-            && (candidate.hypothesis.spec().may_be_inertial || candidate.hypothesis.is(&RotorInertia))
+            && (candidate.hypothesis.spec().may_be_inertial || candidate.hypothesis.is(&ROTOR_INERTIA))
             && problem.acts(candidate) == Acts::Always
             && !selected.set.iter().any(|&other| other == c || problem.exclude(c, other))
     };

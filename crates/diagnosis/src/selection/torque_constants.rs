@@ -1,7 +1,7 @@
 //! Torque constants beyond their tolerance: the background corrects all of them a little, and one that deviates more is an effect with a name.
 
-use effects::arm::InertialScale;
-use effects::sensor::TorqueScale;
+use effects::arm::INERTIAL_SCALE;
+use effects::sensor::TORQUE_SCALE;
 
 use crate::search::problem::Selection;
 use crate::search::study::Study;
@@ -18,7 +18,7 @@ pub fn accuracy(study: &Study, set: &[usize]) -> f64 {
     let strengths = &study.strengths;
     let all_are_exact = strengths.gain == 0.0 && strengths.links.iter().all(|&rho| rho == 0.0);
     // A common factor of all masses is one of all torque constants, too.
-    let names_some = |&&c: &&usize| names(study, c).is_some() || study.candidates[c].hypothesis.is(&InertialScale);
+    let names_some = |&&c: &&usize| names(study, c).is_some() || study.candidates[c].hypothesis.is(&INERTIAL_SCALE);
     let is_one_named = set.iter().filter(names_some).count() <= 1;
     if study.stated.gain.is_none() && all_are_exact && is_one_named {
         // The inertials and all other torque constants are exact.
@@ -29,7 +29,7 @@ pub fn accuracy(study: &Study, set: &[usize]) -> f64 {
 
 /// The joint whose torque constant a candidate names, for all times.
 fn names(study: &Study, candidate: usize) -> Option<usize> {
-    let is_scale = study.candidates[candidate].hypothesis.is(&TorqueScale);
+    let is_scale = study.candidates[candidate].hypothesis.is(&TORQUE_SCALE);
     let always = study.always_acts(candidate);
     study.candidates[candidate].joint.filter(|_| is_scale && always)
 }

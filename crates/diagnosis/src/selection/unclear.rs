@@ -2,7 +2,7 @@
 
 use effects::background::OWN_FRICTION;
 use effects::drive::{LATE, UNIT_LAG};
-use effects::friction::{ThermalDrift, WARMING};
+use effects::friction::{THERMAL_DRIFT, WARMING};
 use effects::{Against, Effect, Term};
 use torque::Corrected;
 
@@ -74,8 +74,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
         // The intervals of its parameters, or the other effects, exclude it.
         let is_contradicted = |named: &Named| {
             let interval = |key: &str| named.parameters.get(key).map(|parameter| parameter.ci95);
-            let kind = named.effect.kind().get();
-            !kind.is_certain(&named.effect, &interval, accuracy) || kind.is_contradicted(&named.effect, &all)
+            let (effect, spec) = (&named.effect, named.effect.spec());
+            !(spec.is_certain)(effect, &interval, accuracy) || (spec.is_contradicted)(effect, &all)
         };
         named.iter().any(|named| is_impossible(named) || is_contradicted(named))
     };
@@ -191,7 +191,7 @@ fn may_be_a_lag(study: &Study, judged: &Judged, member: &judge::Member) -> bool 
 /// a drive is never quite the same in two recordings, and of two or three levels one in two or six falls by chance.
 fn may_be_own_friction(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
     let candidate = &study.candidates[member.candidate];
-    let (true, Some(joint)) = (candidate.hypothesis.is(&ThermalDrift), candidate.joint) else {
+    let (true, Some(joint)) = (candidate.hypothesis.is(&THERMAL_DRIFT), candidate.joint) else {
         return false;
     };
     let fit = &judged.named.fit;

@@ -74,7 +74,7 @@ fn relations() -> String {
         }
         format!("| `{}` | {} | {} |\n", spec.name, spec.prior, relations.join("; "))
     };
-    CATALOGUE.iter().map(|kind| row(kind.spec())).collect()
+    CATALOGUE.iter().map(|spec| row(spec)).collect()
 }
 
 /// The thresholds of the checks of recordings, from their file in `study`.

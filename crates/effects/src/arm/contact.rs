@@ -4,16 +4,12 @@ use ::arm::STANDARD_GRAVITY;
 
 use crate::fitted::moving_mass;
 use crate::{
-    Against, Contact, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
-    Quantity, Range, Scope, Shape, Size, Spec, Systematic, Term,
+    Against, Contact, Experiment, Law, Parameter, Quantity, Range, Scope, Shape, Size, Spec, Systematic, Term,
 };
 
 /// A force F on the tool for a limited time. The drives must add τ = −Jᵀ F, where J is the Jacobian of the tool's position
 /// in the base's frame.
-#[derive(Debug)]
-pub struct ExternalContact;
-
-static SPEC: Spec = Spec {
+pub static EXTERNAL_CONTACT: Spec = Spec {
     name: "external_contact",
     title: "external contact",
     meaning: "a temporary external force on the arm (contact with a person or an object, a collision)",
@@ -35,6 +31,36 @@ static SPEC: Spec = Spec {
     is_suggested: true,
     against: Against::Time,
     experiment: Some(Experiment { rank: 2, text: "repeat the motion with the arm free of contact" }),
+    // None: the residuals suggest the windows of contacts.
+    forms: |_| Vec::new(),
+    // Two windows that are close to each other are one contact.
+    is_same: |a, b| {
+        let ([a, b, ..], [c, d, ..]) = (a.sizes, b.sizes);
+        a < d + SAME_CONTACT && c < b + SAME_CONTACT
+    },
+    is_possible: |fitted| {
+        let force = (0..3).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
+        force < MOST_CONTACT * (STANDARD_GRAVITY * moving_mass(fitted.arm()))
+    },
+    read: |effect, estimate| {
+        let [from, to] = window(estimate.terms().first()?)?;
+        let (x, y, z) = (estimate.place(0)?, estimate.place(1)?, estimate.place(2)?);
+        estimate.note_within(Systematic::OfForm, "force", &|draw| {
+            (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
+        });
+        estimate.start(from, to - from);
+        let duration = estimate.size(Systematic::OfForm, "duration", Size::Duration, to - from);
+        let force =
+            [("force_x", x), ("force_y", y), ("force_z", z)].map(|(key, at)| estimate.coefficient(key, Some(at), 1.0));
+        let effect = effect.with("start", from);
+        Some(effect.with("duration", duration).with("force", force))
+    },
+    // Contacts with any different value are different contacts.
+    is_twin: |a, b| a == b,
+    apply: |effect, _, machine| {
+        let start = effect.number("start");
+        machine.contacts.push(Contact { start, end: start + effect.number("duration"), force: effect.vector("force") });
+    },
     ..Spec::EMPTY
 };
 
@@ -106,60 +132,15 @@ const SHORTEST_CONTACT: f64 = 0.05;
 /// Contacts that are less than this apart are one contact (s). Source: first diagnosis.
 const SAME_CONTACT: f64 = 1.0;
 
-impl EffectKind for ExternalContact {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// None: the residuals suggest the windows of contacts.
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        Vec::new()
-    }
-
-    /// Two windows that are close to each other are one contact.
-    fn is_same(&self, a: &Term, b: &Term) -> bool {
-        let ([a, b, ..], [c, d, ..]) = (a.sizes, b.sizes);
-        a < d + SAME_CONTACT && c < b + SAME_CONTACT
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        let force = (0..3).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
-        force < MOST_CONTACT * (STANDARD_GRAVITY * moving_mass(fitted.arm()))
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let [from, to] = window(estimate.terms().first()?)?;
-        let (x, y, z) = (estimate.place(0)?, estimate.place(1)?, estimate.place(2)?);
-        estimate.note_within(Systematic::OfForm, "force", &|draw| {
-            (draw[x].powi(2) + draw[y].powi(2) + draw[z].powi(2)).sqrt()
-        });
-        estimate.start(from, to - from);
-        let duration = estimate.size(Systematic::OfForm, "duration", Size::Duration, to - from);
-        let force =
-            [("force_x", x), ("force_y", y), ("force_z", z)].map(|(key, at)| estimate.coefficient(key, Some(at), 1.0));
-        let effect = Effect::of(&Self).with("start", from);
-        Some(effect.with("duration", duration).with("force", force))
-    }
-
-    /// Contacts with any different value are different contacts.
-    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a == b
-    }
-
-    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
-        let start = effect.number("start");
-        machine.contacts.push(Contact { start, end: start + effect.number("duration"), force: effect.vector("force") });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::{column, machine};
 
     #[test]
     fn it_lasts_as_long_as_its_columns() {
-        let effect = Effect::of(&ExternalContact).with("start", 0.2);
+        let effect = Effect::of(&EXTERNAL_CONTACT).with("start", 0.2);
         let effect = effect.with("duration", 0.3).with("force", [5.0, 2.0, 7.0]);
         let contact = &machine(&effect).contacts[0];
         assert_eq!((contact.start, contact.end), (0.2, 0.5));

@@ -3,13 +3,10 @@
 use ::arm::Inertia;
 
 use super::tensor::{entries, second_moments, tensor};
-use crate::{Effect, EffectKind, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Shape, Spec};
+use crate::{Effect, InUrdf, Law, Parameter, Quantity, Range, Shape, Spec};
 
 /// The link that the joint carries has these inertial parameters.
-#[derive(Debug)]
-pub struct InertialParameters;
-
-static SPEC: Spec = Spec {
+pub static INERTIAL_PARAMETERS: Spec = Spec {
     name: "inertial_parameters",
     title: "inertial parameters",
     meaning: "masses, centres of mass and moments of inertia that differ from the URDF's in no particular way",
@@ -30,6 +27,14 @@ static SPEC: Spec = Spec {
     is_wrong_mass: true,
     is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,
+    // None: inertial parameters are in the background of every fit, and named where the background is large.
+    forms: |_| Vec::new(),
+    refuse: |effect| {
+        let moments = second_moments(&link_body(effect).tensor).symmetric_eigenvalues();
+        let wrong = moments.min() < -ROUNDING * moments.amax();
+        wrong.then_some(("inertia's smallest second moment of mass", moments.min(), Range::NotNegative.requirement()))
+    },
+    apply: |effect, at, machine| machine.change_arm(|arm| arm.with_link_inertia(at.joint, link_body(effect))),
     ..Spec::EMPTY
 };
 
@@ -40,39 +45,16 @@ pub static PARAMETER: Law = Law { name: "inertial parameter", needs_model: true,
 /// The share of the largest moment of inertia by which another may be negative, for rounding. Source: rounding.
 const ROUNDING: f64 = 1e-6;
 
-impl InertialParameters {
-    /// The effect that gives the link behind `joint` this body, in the link's frame.
-    pub fn effect(joint: impl Into<String>, body: &Inertia) -> Effect {
-        let com = [body.com.x, body.com.y, body.com.z];
-        let effect = Effect::of(&Self).on(joint).with("mass", body.mass);
-        effect.with("com", com).with("inertia", entries(&body.tensor))
-    }
-
-    /// The body that an effect gives its link.
-    pub fn body(effect: &Effect) -> Inertia {
-        Inertia { mass: effect.number("mass"), com: effect.vector("com"), tensor: tensor(effect.list("inertia")) }
-    }
+/// The effect that gives the link behind `joint` this body, in the link's frame.
+pub fn link_effect(joint: impl Into<String>, body: &Inertia) -> Effect {
+    let com = [body.com.x, body.com.y, body.com.z];
+    let effect = Effect::of(&INERTIAL_PARAMETERS).on(joint).with("mass", body.mass);
+    effect.with("com", com).with("inertia", entries(&body.tensor))
 }
 
-impl EffectKind for InertialParameters {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// None: inertial parameters are in the background of every fit, and named where the background is large.
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        Vec::new()
-    }
-
-    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let moments = second_moments(&Self::body(effect).tensor).symmetric_eigenvalues();
-        let wrong = moments.min() < -ROUNDING * moments.amax();
-        wrong.then_some(("inertia's smallest second moment of mass", moments.min(), Range::NotNegative.requirement()))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.change_arm(|arm| arm.with_link_inertia(at.joint, Self::body(effect)));
-    }
+/// The body that an effect gives its link.
+pub fn link_body(effect: &Effect) -> Inertia {
+    Inertia { mass: effect.number("mass"), com: effect.vector("com"), tensor: tensor(effect.list("inertia")) }
 }
 
 #[cfg(test)]
@@ -87,11 +69,11 @@ mod tests {
             com: ::arm::Vector3::new(0.1, 0.0, -0.2),
             tensor: ::arm::Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.04)),
         };
-        let effect = InertialParameters::effect("a", &body);
-        assert_eq!(InertialParameters::body(&effect), body);
-        assert!(InertialParameters.refuse(&effect).is_none());
+        let effect = link_effect("a", &body);
+        assert_eq!(link_body(&effect), body);
+        assert!((INERTIAL_PARAMETERS.refuse)(&effect).is_none());
         let thin = Inertia { tensor: ::arm::Matrix3::from_diagonal(&::arm::Vector3::new(0.02, 0.03, 0.09)), ..body };
-        let effect = InertialParameters::effect("a", &thin);
-        assert!(InertialParameters.refuse(&effect).is_some(), "no body has such moments");
+        let effect = link_effect("a", &thin);
+        assert!((INERTIAL_PARAMETERS.refuse)(&effect).is_some(), "no body has such moments");
     }
 }

@@ -1,16 +1,10 @@
 //! Masses and inertias that are all a constant multiple of the model's.
 
-use crate::sensor::{TorqueScale, is_beyond_tolerance};
-use crate::{
-    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place,
-    Quantity, Range, Scope, Spec, Term,
-};
+use crate::sensor::{TORQUE_SCALE, is_beyond_tolerance};
+use crate::{Detectability, Form, InUrdf, Law, Parameter, Quantity, Range, Scope, Spec, Term};
 
 /// All masses and inertias are `factor` times the model's.
-#[derive(Debug)]
-pub struct InertialScale;
-
-static SPEC: Spec = Spec {
+pub static INERTIAL_SCALE: Spec = Spec {
     name: "inertial_scale",
     title: "inertial scale",
     meaning: "all masses and inertias are a constant multiple of the model's",
@@ -36,6 +30,19 @@ static SPEC: Spec = Spec {
     detectability: Detectability::OfArm { columns: 1 },
     not_testable_turn: 14,
     in_urdf: InUrdf::Inertials,
+    forms: |_| vec![Form::of_arm(vec![Term::about(&SCALE, 0)])],
+    is_possible: |fitted| RELATIVE.contains(&fitted.value(0)),
+    // Torque constants that are all wrong have the same torque, so that the factor must be beyond what is usual of them.
+    is_certain: |effect, _, accuracy| is_beyond_tolerance(effect, accuracy),
+    // Beside several torque constants that are named, the factor may be a part of theirs: only the products of both are determined.
+    is_contradicted: |_, beside| beside.iter().filter(|other| other.is(&TORQUE_SCALE)).count() >= SEVERAL_CONSTANTS,
+    read: |effect, estimate| {
+        let at = estimate.place(0)?;
+        let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
+        Some(effect.with("factor", factor))
+    },
+    sum: |a, b| Some(a.clone().with("factor", a.number("factor") * b.number("factor"))),
+    apply: |effect, _, machine| machine.change_arm(|arm| arm.with_scaled_inertias(effect.number("factor"))),
     ..Spec::EMPTY
 };
 
@@ -58,68 +65,31 @@ const RELATIVE: std::ops::Range<f64> = -0.6..1.5;
 /// one was false, beside two constants; the eight true ones have at most one.
 const SEVERAL_CONSTANTS: usize = 2;
 
-impl EffectKind for InertialScale {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        vec![Form::of_arm(vec![Term::about(&SCALE, 0)])]
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        RELATIVE.contains(&fitted.value(0))
-    }
-
-    /// Torque constants that are all wrong have the same torque, so that the factor must be beyond what is usual of them.
-    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {
-        is_beyond_tolerance(effect, accuracy)
-    }
-
-    /// Beside several torque constants that are named, the factor may be a part of theirs: only the products of both are determined.
-    fn is_contradicted(&self, _effect: &Effect, beside: &[Effect]) -> bool {
-        beside.iter().filter(|other| other.is(&TorqueScale)).count() >= SEVERAL_CONSTANTS
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let at = estimate.place(0)?;
-        let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
-        Some(Effect::of(&Self).with("factor", factor))
-    }
-
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(a.clone().with("factor", a.number("factor") * b.number("factor")))
-    }
-
-    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
-        machine.change_arm(|arm| arm.with_scaled_inertias(effect.number("factor")));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_column_is_its_torque() {
-        let effect = Effect::of(&InertialScale).with("factor", 1.2);
+        let effect = Effect::of(&INERTIAL_SCALE).with("factor", 1.2);
         agree(&effect, &[(Term::about(&SCALE, 0), 0.2)]);
     }
 
     #[test]
     fn a_factor_beside_several_torque_constants_is_contradicted() {
-        let scale = |joint: &str| Effect::of(&TorqueScale).on(joint).with("factor", 1.2);
-        let factor = Effect::of(&InertialScale).with("factor", 0.87);
-        assert!(!InertialScale.is_contradicted(&factor, &[factor.clone(), scale("a")]));
-        assert!(InertialScale.is_contradicted(&factor, &[factor.clone(), scale("a"), scale("b")]));
+        let scale = |joint: &str| Effect::of(&TORQUE_SCALE).on(joint).with("factor", 1.2);
+        let factor = Effect::of(&INERTIAL_SCALE).with("factor", 0.87);
+        assert!(!(INERTIAL_SCALE.is_contradicted)(&factor, &[factor.clone(), scale("a")]));
+        assert!((INERTIAL_SCALE.is_contradicted)(&factor, &[factor.clone(), scale("a"), scale("b")]));
     }
 
     #[test]
     fn a_factor_within_the_tolerance_of_torque_constants_is_not_certain() {
         let certain = |factor: f64, accuracy: f64| {
-            let effect = Effect::of(&InertialScale).with("factor", factor);
-            InertialScale.is_certain(&effect, &|_| None, accuracy)
+            let effect = Effect::of(&INERTIAL_SCALE).with("factor", factor);
+            (INERTIAL_SCALE.is_certain)(&effect, &|_| None, accuracy)
         };
         assert!(certain(0.965, 0.015) && certain(1.2, 0.05));
         assert!(!certain(0.965, 0.05) && !certain(1.06, 0.05));

@@ -1,15 +1,9 @@
 //! A link whose mass and inertia differ from the model's.
 
-use crate::{
-    Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Law, Machine, Parameter, Place, Quantity, Range, Spec,
-    Term, Turn,
-};
+use crate::{Form, InUrdf, Law, Parameter, Quantity, Range, Spec, Term, Turn};
 
 /// The mass and inertia of the link that the joint carries are (1 + `relative`) times the model's.
-#[derive(Debug)]
-pub struct LinkInertialError;
-
-static SPEC: Spec = Spec {
+pub static LINK_INERTIAL_ERROR: Spec = Spec {
     name: "link_inertial_error",
     title: "link inertia error",
     meaning: "a link's mass or inertia differs from the model's",
@@ -26,6 +20,24 @@ static SPEC: Spec = Spec {
     acts_before_its_joint: true,
     is_beyond_the_drive: true,
     in_urdf: InUrdf::Inertials,
+    // Forms for all links, whether their joints move or not.
+    forms: |grounds| {
+        let form = |link| Form::on(Turn::Link, link, vec![Term::about(&LINK, link)]);
+        (0..grounds.dof()).map(form).collect()
+    },
+    is_possible: |fitted| RELATIVE.contains(&fitted.value(0)),
+    read: |effect, estimate| {
+        let relative = estimate.coefficient("relative", estimate.place(0), 1.0);
+        Some(effect.with("relative", relative))
+    },
+    // Their factors are multiplied.
+    sum: |a, b| {
+        let [a_factor, b_factor] = [a, b].map(|effect| 1.0 + effect.number("relative"));
+        Some(a.clone().with("relative", a_factor * b_factor - 1.0))
+    },
+    apply: |effect, at, machine| {
+        machine.change_arm(|arm| arm.with_scaled_link(at.joint, 1.0 + effect.number("relative")));
+    },
     ..Spec::EMPTY
 };
 
@@ -44,45 +56,15 @@ pub static LINK: Law = Law {
 /// The relative error that the mass of a link may have. Source: first diagnosis.
 const RELATIVE: std::ops::Range<f64> = -0.8..2.0;
 
-impl EffectKind for LinkInertialError {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// Forms for all links, whether their joints move or not.
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |link| Form::on(Turn::Link, link, vec![Term::about(&LINK, link)]);
-        (0..grounds.dof()).map(form).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        RELATIVE.contains(&fitted.value(0))
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let relative = estimate.coefficient("relative", estimate.place(0), 1.0);
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("relative", relative))
-    }
-
-    /// Their factors are multiplied.
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        let [a_factor, b_factor] = [a, b].map(|effect| 1.0 + effect.number("relative"));
-        Some(a.clone().with("relative", a_factor * b_factor - 1.0))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.change_arm(|arm| arm.with_scaled_link(at.joint, 1.0 + effect.number("relative")));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_column_is_its_torque() {
-        let effect = Effect::of(&LinkInertialError).on("b").with("relative", -0.1);
+        let effect = Effect::of(&LINK_INERTIAL_ERROR).on("b").with("relative", -0.1);
         agree(&effect, &[(Term::about(&LINK, 1), -0.1)]);
     }
 }

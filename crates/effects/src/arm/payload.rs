@@ -5,15 +5,12 @@ use ::arm::{Arm, Inertia, Matrix3, Vector3};
 use super::tensor::{entries, second_moments, tensor};
 use crate::fitted::moving_mass;
 use crate::{
-    Acts, Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, InUrdf, Law, Machine,
-    Parameter, Place, Quantity, Range, Scope, SetsIn, Shape, Spec, Systematic, Term,
+    Acts, Detectability, Effect, Estimate, Experiment, Form, InUrdf, Law, Parameter, Quantity, Range, Scope, SetsIn,
+    Shape, Spec, Systematic, Term,
 };
 
 /// A body fixed to the tool.
-#[derive(Debug)]
-pub struct Payload;
-
-static SPEC: Spec = Spec {
+pub static PAYLOAD: Spec = Spec {
     name: "payload",
     title: "payload",
     meaning: "a body at the tool that the model does not contain",
@@ -47,8 +44,92 @@ static SPEC: Spec = Spec {
     in_urdf: InUrdf::Inertials,
     experiment: Some(Experiment {
         rank: 9,
-        text: "record the same motion without the load, or with the tool mounted if it is missing: an effect that remains is not a payload",
+        text: "record the same motion without the load, or with the tool mounted if it is missing: \
+               an effect that remains is not a payload",
     }),
+    // A form with moments of inertia, one without them for recordings that do not show them, and one for each body that the
+    // URDF fixes to the last link and that may not be mounted: its inertia is known, so that it has one coefficient instead of ten.
+    forms: |grounds| {
+        let last = grounds.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass);
+        let bodies = grounds.arm.fixed_bodies().iter().enumerate();
+        let drawn = bodies
+            .filter(|(_, body)| body.inertia.mass >= LEAST_OF_LAST_LINK * last)
+            .map(|(k, _)| Form::of_arm(vec![Term::about(&NOT_MOUNTED, k)]));
+        let free = [with_moments(), without_moments()].map(Form::of_arm);
+        free.into_iter().chain(drawn).collect()
+    },
+    sets_in: Some(SetsIn { turn: 4, forms: |_| vec![with_moments(), without_moments()], looked_for_with: 4 }),
+    is_possible: |fitted| {
+        let is_of_before = matches!(fitted.term(0).acts, Acts::Until(_));
+        if std::ptr::eq(fitted.term(0).law, &NOT_MOUNTED) {
+            return !is_of_before && NOT_MOUNTED_RANGE.contains(&fitted.value(0));
+        }
+        let mass = fitted.value(0);
+        let reach = PAYLOAD_REACH * reach(fitted.arm());
+        let first: f64 = (1..4).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
+        let last = fitted.arm().joints().last().map_or(0.0, |joint| joint.inertia.mass);
+        // A tool that the URDF draws and that is not mounted has a negative mass; the last link must keep a positive one.
+        let is_there = mass > 0.0 && mass < MOST_PAYLOAD * moving_mass(fitted.arm());
+        // A tool that was mounted after the recordings from before is a payload since then.
+        let is_large = fitted.term(0).is_always() || -mass > LEAST_REMOVED * last;
+        let is_missing = !is_of_before && is_large && mass < 0.0 && -mass < last;
+        (is_there || is_missing) && first < mass.abs() * reach
+    },
+    read: |effect, estimate| {
+        let terms = estimate.terms();
+        if let Some(term) = terms.first().filter(|term| std::ptr::eq(term.law, &NOT_MOUNTED)) {
+            return read_not_mounted(effect, estimate, term.of[0]);
+        }
+        let places: [Option<usize>; 10] =
+            std::array::from_fn(|parameter| estimate.place(terms.iter().position(|term| term.of[0] == parameter)?));
+        let read = |draw: &[f64]| places.map(|place| place.map_or(0.0, |place| draw[place]));
+        // Wrong masses of the links are the same before a payload is picked up.
+        let always = terms.iter().all(Term::is_always);
+        let systematic = if always { Systematic::OfLinks } else { Systematic::Usual };
+        let mass = estimate.note_within(systematic, "mass", &|draw| read(draw)[0]);
+        let mut com = [0.0; 3];
+        for (k, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
+            com[k] = estimate.note(key, |draw| {
+                let parameters = read(draw);
+                parameters[1 + k] / parameters[0]
+            });
+            // No torque depends on it, as on the height of a payload of an arm whose axes are all vertical.
+            if com[k].abs() < UNSEEN {
+                let reach = PAYLOAD_REACH * reach(estimate.arm());
+                [-reach, reach].into_iter().for_each(|end| estimate.extend(key, end));
+            }
+        }
+        let inertia = match places[4] {
+            Some(_) => Some(body(&read(estimate.best())).tensor).filter(|tensor| exists(mass, tensor)),
+            None => Some(estimate.load_tensor()),
+        };
+        let inertia = inertia.unwrap_or_else(Matrix3::zeros);
+        let inertia = entries(&inertia);
+        let effect = effect.with("mass", mass).with("com", com);
+        Some(effect.with("inertia", inertia).since(estimate.onset()))
+    },
+    refuse: |effect| {
+        // All moments of a missing body are negative.
+        let sense = effect.number("mass").signum();
+        let moments = sense * tensor(effect.list("inertia")).symmetric_eigenvalues();
+        let wrong = moments.min() < -ROUNDING * moments.amax();
+        wrong.then_some(("inertia's smallest principal moment", moments.min(), Range::NotNegative.requirement()))
+    },
+    // Payloads add up: a known one and one that was found in addition. Two equal payloads are an error of the user.
+    is_twin: |a, b| a == b,
+    own_title: |effect| (effect.number("mass") < 0.0).then_some("tool not mounted"),
+    own_sentence: |effect| {
+        let text = "the model has a body at the tool that is not mounted: {mass}";
+        (effect.number("mass") < 0.0).then_some(text)
+    },
+    before_it: |effect| {
+        if effect.number("mass") < 0.0 {
+            "although it was in the recordings from before"
+        } else {
+            "absent in the recordings from before"
+        }
+    },
+    apply: |effect, _, machine| machine.payloads.push((effect.onset(), payload_body(effect))),
     ..Spec::EMPTY
 };
 
@@ -161,26 +242,24 @@ pub fn exists(mass: f64, tensor: &Matrix3<f64>) -> bool {
     second_moments(&(tensor * mass.signum())).symmetric_eigenvalues().min() >= 0.0
 }
 
-impl Payload {
-    /// The payload that the absence of the `k`-th fixed body is: negative, with the URDF's centre of mass.
-    fn read_not_mounted(estimate: &mut dyn Estimate, k: usize) -> Option<Effect> {
-        let drawn = at_tool(estimate.arm(), k);
-        let place = estimate.place(0)?;
-        let mass = estimate.note("mass", |draw| -draw[place] * drawn.mass);
-        for (axis, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
-            estimate.note(key, |_| drawn.com[axis]);
-        }
-        let tensor = drawn.tensor * (mass / drawn.mass);
-        let inertia = entries(&tensor);
-        let com: [f64; 3] = drawn.com.into();
-        let effect = Effect::of(&Self).with("mass", mass).with("com", com);
-        Some(effect.with("inertia", inertia).since(estimate.onset()))
+/// The payload that the absence of the `k`-th fixed body is: negative, with the URDF's centre of mass.
+fn read_not_mounted(effect: Effect, estimate: &mut dyn Estimate, k: usize) -> Option<Effect> {
+    let drawn = at_tool(estimate.arm(), k);
+    let place = estimate.place(0)?;
+    let mass = estimate.note("mass", |draw| -draw[place] * drawn.mass);
+    for (axis, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
+        estimate.note(key, |_| drawn.com[axis]);
     }
+    let tensor = drawn.tensor * (mass / drawn.mass);
+    let inertia = entries(&tensor);
+    let com: [f64; 3] = drawn.com.into();
+    let effect = effect.with("mass", mass).with("com", com);
+    Some(effect.with("inertia", inertia).since(estimate.onset()))
+}
 
-    /// The body of a payload.
-    pub fn inertia(effect: &Effect) -> Inertia {
-        Inertia { mass: effect.number("mass"), com: effect.vector("com"), tensor: tensor(effect.list("inertia")) }
-    }
+/// The body of a payload.
+pub fn payload_body(effect: &Effect) -> Inertia {
+    Inertia { mass: effect.number("mass"), com: effect.vector("com"), tensor: tensor(effect.list("inertia")) }
 }
 
 /// The `k`-th body that the URDF fixes to the last link, in the tool's frame.
@@ -199,116 +278,6 @@ fn with_moments() -> Vec<Term> {
 
 fn without_moments() -> Vec<Term> {
     columns(&WITHOUT_MOMENTS, 4)
-}
-
-impl EffectKind for Payload {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// A form with moments of inertia, one without them for recordings that do not show them, and one for each body that the
-    /// URDF fixes to the last link and that may not be mounted: its inertia is known, so that it has one coefficient instead of ten.
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let last = grounds.arm.joints().last().map_or(0.0, |joint| joint.inertia.mass);
-        let bodies = grounds.arm.fixed_bodies().iter().enumerate();
-        let drawn = bodies
-            .filter(|(_, body)| body.inertia.mass >= LEAST_OF_LAST_LINK * last)
-            .map(|(k, _)| Form::of_arm(vec![Term::about(&NOT_MOUNTED, k)]));
-        let free = [with_moments(), without_moments()].map(Form::of_arm);
-        free.into_iter().chain(drawn).collect()
-    }
-
-    fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn { turn: 4, forms: |_| vec![with_moments(), without_moments()], looked_for_with: 4 })
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        let is_of_before = matches!(fitted.term(0).acts, Acts::Until(_));
-        if std::ptr::eq(fitted.term(0).law, &NOT_MOUNTED) {
-            return !is_of_before && NOT_MOUNTED_RANGE.contains(&fitted.value(0));
-        }
-        let mass = fitted.value(0);
-        let reach = PAYLOAD_REACH * reach(fitted.arm());
-        let first: f64 = (1..4).map(|k| fitted.value(k).powi(2)).sum::<f64>().sqrt();
-        let last = fitted.arm().joints().last().map_or(0.0, |joint| joint.inertia.mass);
-        // A tool that the URDF draws and that is not mounted has a negative mass; the last link must keep a positive one.
-        let is_there = mass > 0.0 && mass < MOST_PAYLOAD * moving_mass(fitted.arm());
-        // A tool that was mounted after the recordings from before is a payload since then.
-        let is_large = fitted.term(0).is_always() || -mass > LEAST_REMOVED * last;
-        let is_missing = !is_of_before && is_large && mass < 0.0 && -mass < last;
-        (is_there || is_missing) && first < mass.abs() * reach
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let terms = estimate.terms();
-        if let Some(term) = terms.first().filter(|term| std::ptr::eq(term.law, &NOT_MOUNTED)) {
-            return Self::read_not_mounted(estimate, term.of[0]);
-        }
-        let places: [Option<usize>; 10] =
-            std::array::from_fn(|parameter| estimate.place(terms.iter().position(|term| term.of[0] == parameter)?));
-        let read = |draw: &[f64]| places.map(|place| place.map_or(0.0, |place| draw[place]));
-        // Wrong masses of the links are the same before a payload is picked up.
-        let always = terms.iter().all(Term::is_always);
-        let systematic = if always { Systematic::OfLinks } else { Systematic::Usual };
-        let mass = estimate.note_within(systematic, "mass", &|draw| read(draw)[0]);
-        let mut com = [0.0; 3];
-        for (k, key) in ["com_x", "com_y", "com_z"].into_iter().enumerate() {
-            com[k] = estimate.note(key, |draw| {
-                let parameters = read(draw);
-                parameters[1 + k] / parameters[0]
-            });
-            // No torque depends on it, as on the height of a payload of an arm whose axes are all vertical.
-            if com[k].abs() < UNSEEN {
-                let reach = PAYLOAD_REACH * reach(estimate.arm());
-                [-reach, reach].into_iter().for_each(|end| estimate.extend(key, end));
-            }
-        }
-        let inertia = match places[4] {
-            Some(_) => Some(body(&read(estimate.best())).tensor).filter(|tensor| exists(mass, tensor)),
-            None => Some(estimate.load_tensor()),
-        };
-        let inertia = inertia.unwrap_or_else(Matrix3::zeros);
-        let inertia = entries(&inertia);
-        let effect = Effect::of(&Self).with("mass", mass).with("com", com);
-        Some(effect.with("inertia", inertia).since(estimate.onset()))
-    }
-
-    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        // All moments of a missing body are negative.
-        let sense = effect.number("mass").signum();
-        let moments = sense * tensor(effect.list("inertia")).symmetric_eigenvalues();
-        let wrong = moments.min() < -ROUNDING * moments.amax();
-        wrong.then_some(("inertia's smallest principal moment", moments.min(), Range::NotNegative.requirement()))
-    }
-
-    /// Payloads add up: a known one and one that was found in addition. Two equal payloads are an error of the user.
-    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a == b
-    }
-
-    fn title(&self, effect: &Effect) -> &'static str {
-        if effect.number("mass") < 0.0 { "tool not mounted" } else { SPEC.title }
-    }
-
-    fn sentence(&self, effect: &Effect) -> &'static str {
-        if effect.number("mass") < 0.0 {
-            "the model has a body at the tool that is not mounted: {mass}"
-        } else {
-            SPEC.sentence
-        }
-    }
-
-    fn before_it(&self, effect: &Effect) -> &'static str {
-        if effect.number("mass") < 0.0 {
-            "although it was in the recordings from before"
-        } else {
-            "absent in the recordings from before"
-        }
-    }
-
-    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
-        machine.payloads.push((effect.onset(), Self::inertia(effect)));
-    }
 }
 
 /// The least reach of an arm (m), which limits the distance of a payload.
@@ -338,7 +307,7 @@ mod tests {
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&Payload).with("mass", 1.5).with("com", [0.1, 0.2, 0.0]);
+        let effect = Effect::of(&PAYLOAD).with("mass", 1.5).with("com", [0.1, 0.2, 0.0]);
         let first = [1.5, 0.15, 0.3];
         let com = [0.1, 0.2];
         // About the tool's origin, by the parallel axes.

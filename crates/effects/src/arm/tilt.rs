@@ -3,20 +3,17 @@
 use ::arm::{Arm, Vector3};
 
 use crate::{
-    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
-    Quantity, Range, Scope, Shape, Spec, Term,
+    Detectability, Effect, Estimate, Experiment, Form, Law, Parameter, Quantity, Range, Scope, Shape, Spec, Term,
 };
 
 /// The base is turned by `angle` about `axis` (unit vector in the base's frame), which changes the direction of gravity.
-#[derive(Debug)]
-pub struct GravityMisalignment;
-
-static SPEC: Spec = Spec {
+pub static GRAVITY_MISALIGNMENT: Spec = Spec {
     name: "gravity_misalignment",
     title: "tilted base",
     meaning: "the base is not level, so that the direction of gravity differs from the model's",
     distinguished_by: "a spirit level on the base, or static poses all around the base",
-    formula: "the base turned by the angle about the axis, which changes the direction of gravity: a base that is not level, on a wall or on a ceiling",
+    formula: "the base turned by the angle about the axis, which changes the direction of gravity: \
+              a base that is not level, on a wall or on a ceiling",
     sentence: "a base tilted by {angle}",
     scope: Scope::Arm,
     parameters: &[
@@ -37,6 +34,41 @@ static SPEC: Spec = Spec {
         rank: 7,
         text: "level the base with a spirit level and record again: an effect that remains is not a tilt",
     }),
+    // Small turns by linearisation, and gravity in any other direction.
+    forms: |_| {
+        let of = |law: &'static Law, count: usize| Form::of_arm((0..count).map(|k| Term::about(law, k)).collect());
+        vec![of(&TILT, 2), of(&GRAVITY, 3)]
+    },
+    is_possible: |fitted| {
+        if fitted.len() == 2 {
+            return fitted.value(0).hypot(fitted.value(1)) < MOST_TURNED;
+        }
+        let usual = fitted.arm().gravity();
+        let seen = seen(fitted.arm(), [0, 1, 2].map(|axis| fitted.value(axis)));
+        let factor = seen.norm() / usual.norm().max(f64::MIN_POSITIVE);
+        (1.0 / AS_LARGE..AS_LARGE).contains(&factor) && turn(usual, &seen).0 > LEAST_TURNED
+    },
+    read: |effect, estimate| {
+        if estimate.terms().len() == 3 {
+            return read_gravity(estimate);
+        }
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let angle = estimate.note("angle", |draw| draw[a].hypot(draw[b]));
+        let x = estimate.note("axis_x", |draw| draw[a] / draw[a].hypot(draw[b]));
+        let y = estimate.note("axis_y", |draw| draw[b] / draw[a].hypot(draw[b]));
+        Some(effect.with("angle", angle).with("axis", [x, y, 0.0]))
+    },
+    refuse: |effect| {
+        let axis: [f64; 3] = effect.list("axis");
+        let length = axis.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let range = Range::Positive;
+        (!range.contains(length)).then_some(("axis' length", length, range.requirement()))
+    },
+    // Two of them add up, such as one of a file of known effects and one that is found in addition to it.
+    is_twin: |a, b| a == b,
+    apply: |effect, _, machine| {
+        machine.change_arm(|arm| arm.with_turned_base(effect.vector("axis"), effect.number("angle")));
+    },
     ..Spec::EMPTY
 };
 
@@ -107,56 +139,7 @@ fn read_gravity(estimate: &mut dyn Estimate) -> Option<Effect> {
     };
     let x = estimate.note("axis_x", |draw| axis(draw).x);
     let y = estimate.note("axis_y", |draw| axis(draw).y);
-    Some(Effect::of(&GravityMisalignment).with("angle", angle).with("axis", [x, y, about.z]))
-}
-
-impl EffectKind for GravityMisalignment {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// Small turns by linearisation, and gravity in any other direction.
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        let of = |law: &'static Law, count: usize| Form::of_arm((0..count).map(|k| Term::about(law, k)).collect());
-        vec![of(&TILT, 2), of(&GRAVITY, 3)]
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        if fitted.len() == 2 {
-            return fitted.value(0).hypot(fitted.value(1)) < MOST_TURNED;
-        }
-        let usual = fitted.arm().gravity();
-        let seen = seen(fitted.arm(), [0, 1, 2].map(|axis| fitted.value(axis)));
-        let factor = seen.norm() / usual.norm().max(f64::MIN_POSITIVE);
-        (1.0 / AS_LARGE..AS_LARGE).contains(&factor) && turn(usual, &seen).0 > LEAST_TURNED
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        if estimate.terms().len() == 3 {
-            return read_gravity(estimate);
-        }
-        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
-        let angle = estimate.note("angle", |draw| draw[a].hypot(draw[b]));
-        let x = estimate.note("axis_x", |draw| draw[a] / draw[a].hypot(draw[b]));
-        let y = estimate.note("axis_y", |draw| draw[b] / draw[a].hypot(draw[b]));
-        Some(Effect::of(&Self).with("angle", angle).with("axis", [x, y, 0.0]))
-    }
-
-    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let axis: [f64; 3] = effect.list("axis");
-        let length = axis.iter().map(|value| value * value).sum::<f64>().sqrt();
-        let range = Range::Positive;
-        (!range.contains(length)).then_some(("axis' length", length, range.requirement()))
-    }
-
-    /// Two of them add up, such as one of a file of known effects and one that is found in addition to it.
-    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a == b
-    }
-
-    fn apply(&self, effect: &Effect, _: Place, machine: &mut Machine) {
-        machine.change_arm(|arm| arm.with_turned_base(effect.vector("axis"), effect.number("angle")));
-    }
+    Some(Effect::of(&GRAVITY_MISALIGNMENT).with("angle", angle).with("axis", [x, y, about.z]))
 }
 
 #[cfg(test)]
@@ -167,7 +150,7 @@ mod tests {
     /// A small turn agrees with the machine to first order.
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&GravityMisalignment).with("angle", 1e-6);
+        let effect = Effect::of(&GRAVITY_MISALIGNMENT).with("angle", 1e-6);
         let effect = effect.with("axis", [0.6, 0.8, 0.0]);
         agree(&effect, &[(Term::about(&TILT, 0), 0.6e-6), (Term::about(&TILT, 1), 0.8e-6)]);
     }
@@ -178,7 +161,7 @@ mod tests {
         for angle in [0.5, std::f64::consts::FRAC_PI_2, std::f64::consts::PI] {
             let axis = Vector3::new(0.6, 0.8, 0.0);
             let usual = Vector3::new(0.0, 0.0, -9.81);
-            let effect = Effect::of(&GravityMisalignment).with("angle", angle);
+            let effect = Effect::of(&GRAVITY_MISALIGNMENT).with("angle", angle);
             let effect = effect.with("axis", [axis.x, axis.y, axis.z]);
             let turned = nalgebra::Rotation3::from_scaled_axis(-angle * axis) * usual;
             let beyond = turned - usual;

@@ -4,16 +4,10 @@ use super::delay::SECOND_ENCODER;
 use crate::compliance::{LinkSide, gap, noise_behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
-use crate::{
-    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Signals, Size, Spec, Systematic, Term, Turn,
-};
+use crate::{Detectability, Form, Law, Parameter, Quantity, Range, Signals, Size, Spec, Systematic, Term, Turn};
 
 /// The rotor drives the link through a gap of ± `halfgap`; q is the rotor's position.
-#[derive(Debug)]
-pub struct Backlash;
-
-static SPEC: Spec = Spec {
+pub static BACKLASH: Spec = Spec {
     name: "backlash",
     title: "backlash",
     meaning: "a gap in the gear that is crossed at each reversal",
@@ -33,6 +27,44 @@ static SPEC: Spec = Spec {
         is_seen_below: false,
     },
     not_testable_turn: 3,
+    // Forms with rigid and with compliant ends.
+    forms: |grounds| {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            let mut add = |turn, sizes: [f64; 3]| {
+                let terms = vec![Term::about(&GAP, joint).sized(sizes), Term::on(&ACCELERATION, joint)];
+                forms.push(Form::on(turn, joint, terms));
+            };
+            let mass = grounds.mass[joint];
+            let halfgaps = GAPS.map(|share| share * grounds.scales.range[joint].min(1.5));
+            for halfgap in halfgaps {
+                add(Turn::Late, [halfgap, f64::INFINITY, 1.0]);
+            }
+            for halfgap in halfgaps.into_iter().filter(|_| mass > 0.0) {
+                for ratio in STOP_RATIOS {
+                    add(Turn::Compliance, [halfgap, stop(mass, STOP_FREQUENCY), ratio]);
+                }
+            }
+        }
+        forms
+    },
+    is_possible: |fitted| is_near_one(fitted),
+    read: |effect, estimate| {
+        let halfgap = estimate.terms().first()?.sizes[0];
+        let halfgap = estimate.simulated(Systematic::OfForm, "halfgap", |drawn, size| {
+            // Beside effects that do not fit, the coefficient of a gap may be negative; the gap is not.
+            (halfgap * (drawn + size)).max(0.0)
+        });
+        Some(effect.with("halfgap", halfgap))
+    },
+    // Where the gap is closed, compliant ends are a spring.
+    noise_gain: |term, mass, cutoff| {
+        let [_, stop, ratio, ..] = term.sizes;
+        if stop.is_finite() { noise_behind(stop, damping(stop, ratio, mass), mass, cutoff) } else { 0.0 }
+    },
+    // A coefficient below zero, beside effects that do not fit, is no gap.
+    is_certain: |effect, _, _| effect.number("halfgap") > 0.0,
+    apply: |effect, at, machine| machine.gaps[at.joint] += effect.number("halfgap"),
     ..Spec::EMPTY
 };
 
@@ -104,82 +136,27 @@ fn softened(term: &Term, mass: f64) -> Vec<Term> {
     first.map(|(hertz, ratio)| term.sized([halfgap, stop(mass, hertz), ratio])).collect()
 }
 
-impl EffectKind for Backlash {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// Forms with rigid and with compliant ends.
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            let mut add = |turn, sizes: [f64; 3]| {
-                let terms = vec![Term::about(&GAP, joint).sized(sizes), Term::on(&ACCELERATION, joint)];
-                forms.push(Form::on(turn, joint, terms));
-            };
-            let mass = grounds.mass[joint];
-            let halfgaps = GAPS.map(|share| share * grounds.scales.range[joint].min(1.5));
-            for halfgap in halfgaps {
-                add(Turn::Late, [halfgap, f64::INFINITY, 1.0]);
-            }
-            for halfgap in halfgaps.into_iter().filter(|_| mass > 0.0) {
-                for ratio in STOP_RATIOS {
-                    add(Turn::Compliance, [halfgap, stop(mass, STOP_FREQUENCY), ratio]);
-                }
-            }
-        }
-        forms
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        is_near_one(fitted)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let halfgap = estimate.terms().first()?.sizes[0];
-        let halfgap = estimate.simulated(Systematic::OfForm, "halfgap", |drawn, size| {
-            // Beside effects that do not fit, the coefficient of a gap may be negative; the gap is not.
-            (halfgap * (drawn + size)).max(0.0)
-        });
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("halfgap", halfgap))
-    }
-
-    /// Where the gap is closed, compliant ends are a spring.
-    fn noise_gain(&self, term: &Term, mass: f64, cutoff: f64) -> f64 {
-        let [_, stop, ratio, ..] = term.sizes;
-        if stop.is_finite() { noise_behind(stop, damping(stop, ratio, mass), mass, cutoff) } else { 0.0 }
-    }
-
-    /// A coefficient below zero, beside effects that do not fit, is no gap.
-    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
-        effect.number("halfgap") > 0.0
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.gaps[at.joint] += effect.number("halfgap");
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::{column, machine};
 
     #[test]
     fn gaps_add_up() {
-        let effect = Effect::of(&Backlash).on("a").with("halfgap", 0.001);
+        let effect = Effect::of(&BACKLASH).on("a").with("halfgap", 0.001);
         assert_eq!(machine(&effect).gaps, [0.001, 0.0]);
     }
 
     /// Noise of the positions passes compliant ends as it passes a spring, and a coefficient below zero is read as a gap of zero.
     #[test]
     fn noise_behind_compliant_ends_is_no_gap() {
-        let gain = |stop: f64| Backlash.noise_gain(&Term::about(&GAP, 0).sized([0.001, stop, 0.2]), 2.0, 12.0);
+        let gain = |stop: f64| (BACKLASH.noise_gain)(&Term::about(&GAP, 0).sized([0.001, stop, 0.2]), 2.0, 12.0);
         assert!(gain(f64::INFINITY) == 0.0);
         assert!(gain(stop(2.0, 8.0)) > 0.3, "{}", gain(stop(2.0, 8.0)));
         let is_certain = |halfgap: f64| {
-            let effect = Effect::of(&Backlash).on("a").with("halfgap", halfgap);
-            Backlash.is_certain(&effect, &|_| None, 0.0)
+            let effect = Effect::of(&BACKLASH).on("a").with("halfgap", halfgap);
+            (BACKLASH.is_certain)(&effect, &|_| None, 0.0)
         };
         assert!(is_certain(0.001) && !is_certain(0.0));
     }

@@ -1,13 +1,8 @@
 //! Torque that is applied later than it is commanded.
 
 use crate::{
-    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
-    Quantity, Range, Size, Spec, Systematic, Term, Turn, UNIT,
+    Detectability, Experiment, Form, Law, Parameter, Quantity, Range, Size, Spec, Systematic, Term, Turn, UNIT,
 };
-
-/// The torque applied at t is the one commanded at t − `delay`.
-#[derive(Debug)]
-pub struct ActuationDelay;
 
 /// The experiment that distinguishes elasticity and backlash from a delay.
 pub(super) const SECOND_ENCODER: Experiment = Experiment {
@@ -15,7 +10,8 @@ pub(super) const SECOND_ENCODER: Experiment = Experiment {
     text: "record a second encoder on the link side of the gear: it shows backlash and elasticity, and no delay",
 };
 
-static SPEC: Spec = Spec {
+/// The torque applied at t is the one commanded at t − `delay`.
+pub static ACTUATION_DELAY: Spec = Spec {
     name: "actuation_delay",
     title: "actuation delay",
     meaning: "the torque is applied later than it is commanded",
@@ -36,6 +32,31 @@ static SPEC: Spec = Spec {
         is_seen_below: false,
     },
     not_testable_turn: 5,
+    forms: |grounds| {
+        let forms = |joint| {
+            [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, 0.027].map(|delay| {
+                let terms = vec![Term::on(&LATE, joint).sized([delay])];
+                Form::on(Turn::Late, joint, terms)
+            })
+        };
+        let accelerates = |&joint: &usize| grounds.inertial[joint] >= LEAST_INERTIAL;
+        grounds.moving().filter(accelerates).flat_map(forms).collect()
+    },
+    is_possible: |fitted| {
+        let is_short = |term: Term| !term.is(&LATE) || term.sizes[0] < 1.001 * LONGEST_DELAY;
+        UNIT.contains(&fitted.value(0)) && (0..fitted.len()).all(|k| is_short(fitted.term(k)))
+    },
+    // The link behind a gap also lags, by longer than a drive does.
+    is_certain: |effect, _, _| effect.number("delay") <= LONGEST_NAMED,
+    read: |effect, estimate| {
+        let delay = estimate.terms().first()?.sizes[0];
+        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| (delay * (drawn + size)).max(0.0));
+        Some(effect.with("delay", delay))
+    },
+    // Delays add up.
+    is_twin: |_, _| false,
+    of_torque: |effect, joint| Some(Term::on(&LATE, joint).sized([effect.number("delay")])),
+    apply: |effect, at, machine| machine.delays[at.joint] += effect.number("delay"),
     ..Spec::EMPTY
 };
 
@@ -73,52 +94,6 @@ const LONGEST_NAMED: f64 = 0.02;
 /// real robot on which a delay of 26 ms was named where nothing accelerates.
 const LEAST_INERTIAL: f64 = 0.05;
 
-impl EffectKind for ActuationDelay {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let forms = |joint| {
-            [0.002, 0.004, 0.006, 0.009, 0.013, 0.02, 0.027].map(|delay| {
-                let terms = vec![Term::on(&LATE, joint).sized([delay])];
-                Form::on(Turn::Late, joint, terms)
-            })
-        };
-        let accelerates = |&joint: &usize| grounds.inertial[joint] >= LEAST_INERTIAL;
-        grounds.moving().filter(accelerates).flat_map(forms).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        let is_short = |term: Term| !term.is(&LATE) || term.sizes[0] < 1.001 * LONGEST_DELAY;
-        UNIT.contains(&fitted.value(0)) && (0..fitted.len()).all(|k| is_short(fitted.term(k)))
-    }
-
-    /// The link behind a gap also lags, by longer than a drive does.
-    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
-        effect.number("delay") <= LONGEST_NAMED
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let delay = estimate.terms().first()?.sizes[0];
-        let delay = estimate.simulated(Systematic::OfForm, "delay", |drawn, size| (delay * (drawn + size)).max(0.0));
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("delay", delay))
-    }
-
-    /// Delays add up.
-    fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
-        false
-    }
-
-    fn of_torque(&self, effect: &Effect, joint: usize) -> Option<Term> {
-        Some(Term::on(&LATE, joint).sized([effect.number("delay")]))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.delays[at.joint] += effect.number("delay");
-    }
-}
-
 /// The signal minus itself `ticks` earlier, by cubic interpolation; zero before the signal began.
 fn late(signal: &[f64], ticks: f64) -> Vec<f64> {
     let whole = ticks.floor();
@@ -144,19 +119,20 @@ fn late(signal: &[f64], ticks: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::machine;
 
     #[test]
     fn delays_add_up() {
-        let effect = Effect::of(&ActuationDelay).on("b").with("delay", 0.004);
+        let effect = Effect::of(&ACTUATION_DELAY).on("b").with("delay", 0.004);
         assert_eq!(machine(&effect).delays, [0.0, 0.004]);
     }
 
     #[test]
     fn a_longer_delay_than_drives_have_is_not_certain() {
         for (delay, certain) in [(0.004, true), (0.0199, true), (0.023, false), (LONGEST_DELAY, false)] {
-            let effect = Effect::of(&ActuationDelay).on("b").with("delay", delay);
-            assert_eq!(ActuationDelay.is_certain(&effect, &|_| None, 0.0), certain, "{delay}");
+            let effect = Effect::of(&ACTUATION_DELAY).on("b").with("delay", delay);
+            assert_eq!((ACTUATION_DELAY.is_certain)(&effect, &|_| None, 0.0), certain, "{delay}");
         }
     }
 

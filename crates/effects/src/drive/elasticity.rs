@@ -4,16 +4,10 @@ use super::delay::SECOND_ENCODER;
 use crate::compliance::{LinkSide, noise_behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
-use crate::{
-    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Size, Spec, Sprung, Systematic, Term, Turn,
-};
+use crate::{Detectability, Form, Law, Parameter, Quantity, Range, Size, Spec, Sprung, Systematic, Term, Turn};
 
 /// The rotor drives the link through a spring and a damper; q is the rotor's position.
-#[derive(Debug)]
-pub struct JointElasticity;
-
-static SPEC: Spec = Spec {
+pub static JOINT_ELASTICITY: Spec = Spec {
     name: "joint_elasticity",
     title: "joint elasticity",
     meaning: "the drive moves the link through an elastic transmission (belt, harmonic drive)",
@@ -36,6 +30,39 @@ static SPEC: Spec = Spec {
         is_seen_below: true,
     },
     not_testable_turn: 4,
+    // Stiffnesses at which the link resonates at a list of frequencies.
+    forms: |grounds| {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            let mass = grounds.mass[joint];
+            if mass <= 0.0 {
+                continue;
+            }
+            for hertz in RESONANCES {
+                let omega = 2.0 * std::f64::consts::PI * hertz;
+                let sizes = [mass * omega * omega, 2.0 * DAMPING_RATIO * mass * omega];
+                let terms = vec![Term::about(&ELASTIC, joint).sized(sizes), Term::on(&ACCELERATION, joint)];
+                forms.push(Form::on(Turn::Compliance, joint, terms));
+            }
+        }
+        forms
+    },
+    is_possible: |fitted| is_near_one(fitted),
+    read: |effect, estimate| {
+        let [stiffness, damping, ..] = estimate.terms().first()?.sizes;
+        let stiffness = estimate
+            .simulated(Systematic::OfArm, "stiffness", |drawn, size| stiffness / (drawn - size).clamp(0.4, 2.5));
+        let damping = estimate.size(Systematic::FromAbove, "damping", Size::Damping, damping);
+        Some(effect.with("stiffness", stiffness).with("damping", damping))
+    },
+    noise_gain: |term, mass, cutoff| {
+        let [stiffness, damping, ..] = term.sizes;
+        noise_behind(stiffness, damping, mass, cutoff)
+    },
+    apply: |effect, at, machine| {
+        machine.springs[at.joint] =
+            Some(Sprung { stiffness: effect.number("stiffness"), damping: effect.number("damping") });
+    },
     ..Spec::EMPTY
 };
 
@@ -61,61 +88,15 @@ const RESONANCES: [f64; 8] = [2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0];
 /// The damping ratio that is tried first. Source: first diagnosis.
 const DAMPING_RATIO: f64 = 0.06;
 
-impl EffectKind for JointElasticity {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// Stiffnesses at which the link resonates at a list of frequencies.
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            let mass = grounds.mass[joint];
-            if mass <= 0.0 {
-                continue;
-            }
-            for hertz in RESONANCES {
-                let omega = 2.0 * std::f64::consts::PI * hertz;
-                let sizes = [mass * omega * omega, 2.0 * DAMPING_RATIO * mass * omega];
-                let terms = vec![Term::about(&ELASTIC, joint).sized(sizes), Term::on(&ACCELERATION, joint)];
-                forms.push(Form::on(Turn::Compliance, joint, terms));
-            }
-        }
-        forms
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        is_near_one(fitted)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let [stiffness, damping, ..] = estimate.terms().first()?.sizes;
-        let stiffness = estimate
-            .simulated(Systematic::OfArm, "stiffness", |drawn, size| stiffness / (drawn - size).clamp(0.4, 2.5));
-        let damping = estimate.size(Systematic::FromAbove, "damping", Size::Damping, damping);
-        let effect = Effect::of(&Self).on(estimate.joint_name());
-        Some(effect.with("stiffness", stiffness).with("damping", damping))
-    }
-
-    fn noise_gain(&self, term: &Term, mass: f64, cutoff: f64) -> f64 {
-        let [stiffness, damping, ..] = term.sizes;
-        noise_behind(stiffness, damping, mass, cutoff)
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.springs[at.joint] =
-            Some(Sprung { stiffness: effect.number("stiffness"), damping: effect.number("damping") });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::{column, machine};
 
     #[test]
     fn it_is_the_drives_spring() {
-        let effect = Effect::of(&JointElasticity).on("a");
+        let effect = Effect::of(&JOINT_ELASTICITY).on("a");
         let effect = effect.with("stiffness", 1e4).with("damping", 3.0);
         let spring = machine(&effect).springs[0].expect("there is a spring");
         assert_eq!((spring.stiffness, spring.damping), (1e4, 3.0));
@@ -127,7 +108,7 @@ mod tests {
         let gain = |hertz: f64, ratio: f64| {
             let omega = std::f64::consts::TAU * hertz;
             let term = Term::about(&ELASTIC, 0).sized([2.0 * omega * omega, 2.0 * ratio * 2.0 * omega]);
-            JointElasticity.noise_gain(&term, 2.0, 12.0)
+            (JOINT_ELASTICITY.noise_gain)(&term, 2.0, 12.0)
         };
         assert!(gain(1000.0, 0.06) < 1e-3, "{}", gain(1000.0, 0.06));
         assert!(gain(12.0, 0.06) > 5.0, "{}", gain(12.0, 0.06));

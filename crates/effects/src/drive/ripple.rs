@@ -1,16 +1,10 @@
 //! A torque that repeats with the joint's angle.
 
 use crate::laws::{is_same_wave, sine_and_cosine, wave};
-use crate::{
-    Against, Effect, EffectKind, Estimate, Form, Grounds, Law, Machine, Parameter, Place, Quantity, Size, Spec, State,
-    Systematic, Term,
-};
+use crate::{Against, Law, Parameter, Quantity, Size, Spec, State, Systematic, Term};
 
 /// τ = amplitude sin(periods q + phase).
-#[derive(Debug)]
-pub struct TorqueRipple;
-
-static SPEC: Spec = Spec {
+pub static TORQUE_RIPPLE: Spec = Spec {
     name: "torque_ripple",
     title: "torque ripple",
     meaning: "a torque that repeats with the joint's angle (cogging, gear teeth)",
@@ -29,6 +23,34 @@ static SPEC: Spec = Spec {
     may_repeat: true,
     is_periodic: true,
     against: Against::Position,
+    // None: the residuals suggest the periods.
+    forms: |_| Vec::new(),
+    // Two ripples of nearly the same period are not distinguished.
+    is_same: |a, b| is_same_wave(a, b, SAME_PERIODS),
+    read: |effect, estimate| {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let periods = estimate.terms().first()?.sizes[0];
+        let about = estimate.best()[b].atan2(estimate.best()[a]);
+        let amplitude = estimate.note("amplitude", |draw| draw[a].hypot(draw[b]));
+        let periods = estimate.size(Systematic::Usual, "periods", Size::Periods, periods);
+        let phase = estimate.note("phase", |draw| about + around(draw[b].atan2(draw[a]) - about));
+        let effect = effect.with("amplitude", amplitude).with("periods", periods);
+        Some(effect.with("phase", phase))
+    },
+    // A part that turns with the joint repeats a whole number of times per revolution; only a motor before a gear may have any
+    // ratio.
+    is_certain: |effect, interval, _| {
+        let whole = effect.number("periods").round();
+        let holds = |[low, high]: [f64; 2]| whole >= 1.0 && (low..=high).contains(&whole);
+        interval("periods").is_none_or(|own| own[1] >= LEAST_GEARED || holds(own))
+    },
+    // A joint has one ripple for each ratio at which its parts turn.
+    is_twin: |a, b| a.number("periods") == b.number("periods"),
+    apply: |effect, at, machine| {
+        let [amplitude, periods, phase] = ["amplitude", "periods", "phase"].map(|key| effect.number(key));
+        let torque = move |joint: usize, state: State<'_>| amplitude * wave(periods * state.q[joint] + phase, false);
+        machine.add_torque(at.joint, effect.onset(), torque);
+    },
     ..Spec::EMPTY
 };
 
@@ -53,53 +75,6 @@ const LEAST_GEARED: f64 = 8.0;
 /// The relative difference of periods below which two ripples are the same. Source: first diagnosis.
 const SAME_PERIODS: f64 = 0.2;
 
-impl EffectKind for TorqueRipple {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// None: the residuals suggest the periods.
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        Vec::new()
-    }
-
-    /// Two ripples of nearly the same period are not distinguished.
-    fn is_same(&self, a: &Term, b: &Term) -> bool {
-        is_same_wave(a, b, SAME_PERIODS)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
-        let periods = estimate.terms().first()?.sizes[0];
-        let about = estimate.best()[b].atan2(estimate.best()[a]);
-        let amplitude = estimate.note("amplitude", |draw| draw[a].hypot(draw[b]));
-        let periods = estimate.size(Systematic::Usual, "periods", Size::Periods, periods);
-        let phase = estimate.note("phase", |draw| about + around(draw[b].atan2(draw[a]) - about));
-        let effect = Effect::of(&Self).on(estimate.joint_name());
-        let effect = effect.with("amplitude", amplitude).with("periods", periods);
-        Some(effect.with("phase", phase))
-    }
-
-    /// A part that turns with the joint repeats a whole number of times per revolution; only a motor before a gear may have any
-    /// ratio.
-    fn is_certain(&self, effect: &Effect, interval: &dyn Fn(&str) -> Option<[f64; 2]>, _accuracy: f64) -> bool {
-        let whole = effect.number("periods").round();
-        let holds = |[low, high]: [f64; 2]| whole >= 1.0 && (low..=high).contains(&whole);
-        interval("periods").is_none_or(|own| own[1] >= LEAST_GEARED || holds(own))
-    }
-
-    /// A joint has one ripple for each ratio at which its parts turn.
-    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a.number("periods") == b.number("periods")
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let [amplitude, periods, phase] = ["amplitude", "periods", "phase"].map(|key| effect.number(key));
-        let torque = move |joint: usize, state: State<'_>| amplitude * wave(periods * state.q[joint] + phase, false);
-        machine.add_torque(at.joint, effect.onset(), torque);
-    }
-}
-
 /// An angle within half a turn of zero.
 fn around(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
@@ -108,13 +83,14 @@ fn around(angle: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn a_slow_ripple_repeats_with_the_joint_itself() {
         let is_certain = |periods: f64, half: f64| {
-            let effect = Effect::of(&TorqueRipple).on("a").with("periods", periods);
-            TorqueRipple.is_certain(&effect, &|_| Some([periods - half, periods + half]), 0.05)
+            let effect = Effect::of(&TORQUE_RIPPLE).on("a").with("periods", periods);
+            (TORQUE_RIPPLE.is_certain)(&effect, &|_| Some([periods - half, periods + half]), 0.05)
         };
         assert!(is_certain(4.05, 0.1));
         assert!(!is_certain(4.27, 0.1));
@@ -124,7 +100,7 @@ mod tests {
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&TorqueRipple).on("a").with("amplitude", 0.5);
+        let effect = Effect::of(&TORQUE_RIPPLE).on("a").with("amplitude", 0.5);
         let effect = effect.with("periods", 6.0).with("phase", 0.1);
         let columns = columns(0, 6.0);
         agree(&effect, &[(columns[0], 0.5 * 0.1_f64.cos()), (columns[1], 0.5 * 0.1_f64.sin())]);

@@ -1,16 +1,10 @@
 //! The inertia of the drive's rotor, reflected to the joint by the gear.
 
 use crate::laws::ACCELERATION;
-use crate::{
-    Against, Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Machine, Parameter, Place,
-    Quantity, Range, Spec, Term, Turn,
-};
+use crate::{Against, Detectability, Experiment, Parameter, Quantity, Range, Spec, Term, Turn};
 
 /// τ = inertia q̈.
-#[derive(Debug)]
-pub struct RotorInertia;
-
-static SPEC: Spec = Spec {
+pub static ROTOR_INERTIA: Spec = Spec {
     name: "rotor_inertia",
     title: "rotor inertia",
     meaning: "the inertia of the drive's rotor, reflected to the joint by the gear",
@@ -27,52 +21,33 @@ static SPEC: Spec = Spec {
     against: Against::Acceleration,
     experiment: Some(Experiment {
         rank: 8,
-        text: "attach a body of known inertia to the tool: the rotor inertia is independent of posture and load, the inertia of a \
-               link is not; or take the rotor inertia from the data sheet (--known)",
+        text: "attach a body of known inertia to the tool: the rotor inertia is independent of posture and load, \
+               the inertia of a link is not; or take the rotor inertia from the data sheet (--known)",
     }),
     detectability: Detectability::LINEAR,
     not_testable_turn: 7,
-    ..Spec::EMPTY
-};
-
-impl EffectKind for RotorInertia {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| Form::on(Turn::Drive, joint, vec![Term::on(&ACCELERATION, joint)]);
-        grounds.moving().map(form).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(0) > 0.0
-    }
-
+    forms: |grounds| grounds.on_moving(Turn::Drive, |joint| vec![Term::on(&ACCELERATION, joint)]),
+    is_possible: |fitted| fitted.value(0) > 0.0,
     // With a spring or a gap in the drive, the rotor's column is not the only one that depends on the acceleration.
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+    read: |effect, estimate| {
         let at = estimate.at(&ACCELERATION)?;
         let inertia = estimate.coefficient("inertia", Some(at), 1.0);
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("inertia", inertia))
-    }
-
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(a.clone().with("inertia", a.number("inertia") + b.number("inertia")))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.rotors[at.joint] += effect.number("inertia");
-    }
-}
+        Some(effect.with("inertia", inertia))
+    },
+    sum: |a, b| Some(a.clone().with("inertia", a.number("inertia") + b.number("inertia"))),
+    apply: |effect, at, machine| machine.rotors[at.joint] += effect.number("inertia"),
+    ..Spec::EMPTY
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_column_is_its_torque() {
-        let effect = Effect::of(&RotorInertia).on("a").with("inertia", 0.4);
+        let effect = Effect::of(&ROTOR_INERTIA).on("a").with("inertia", 0.4);
         agree(&effect, &[(Term::on(&ACCELERATION, 0), 0.4)]);
     }
 }

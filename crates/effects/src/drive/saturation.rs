@@ -1,17 +1,9 @@
 //! A drive whose torque is limited.
 
-use ::arm::JointKind;
-
-use crate::{
-    Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Size, Spec, Systematic, Term, Turn,
-};
+use crate::{Detectability, Effect, Fitted, Form, Law, Parameter, Quantity, Range, Size, Spec, Systematic, Term, Turn};
 
 /// The torque applied is the commanded one, clipped at ± limit.
-#[derive(Debug)]
-pub struct TorqueSaturation;
-
-static SPEC: Spec = Spec {
+pub static TORQUE_SATURATION: Spec = Spec {
     name: "torque_saturation",
     title: "torque saturation",
     meaning: "the drive's torque is limited, whatever is commanded",
@@ -27,6 +19,45 @@ static SPEC: Spec = Spec {
     is_simulated: true,
     detectability: Detectability::Limit { because: "no torque limit was reached" },
     not_testable_turn: 2,
+    forms: |grounds| {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for share in WOUND_UP.into_iter().chain(LIMITS) {
+                let limit = share * grounds.largest[joint];
+                // A drive that gave this torque is not limited far below it.
+                if limit < BELOW_NEED * grounds.needed[joint] {
+                    continue;
+                }
+                let terms = vec![Term::on(&EXCESS, joint).sized([limit])];
+                forms.push(Form::on(Turn::Limit, joint, terms));
+            }
+        }
+        forms
+    },
+    is_possible: |fitted| {
+        // A drive is at its limit for a part of the time only.
+        CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED && cuts(fitted)
+    },
+    is_contradicted: |effect, beside| {
+        let is_here = |other: &&Effect| other.joint() == effect.joint();
+        let friction = beside.iter().filter(is_here);
+        let friction: f64 = friction.filter_map(|other| (other.spec().dry_friction)(other)).sum();
+        effect.number("limit") < LEAST_OVER_FRICTION * friction
+    },
+    read: |effect, estimate| {
+        let limit = estimate.terms().first()?.sizes[0];
+        let limit = estimate.size(Systematic::Usual, "limit", Size::Main, limit);
+        Some(effect.with("limit", limit))
+    },
+    // The lower limit counts.
+    is_twin: |_, _| false,
+    of_torque: |effect, joint| Some(Term::on(&EXCESS, joint).sized([effect.number("limit")])),
+    apply: |effect, at, machine| machine.limits[at.joint] = machine.limits[at.joint].min(effect.number("limit")),
+    region: |terms, joint| {
+        let limit = terms.first()?.sizes[0];
+        let unit = Quantity::Torque.unit(joint);
+        Some(format!("where more than {limit:.3} {unit} are commanded"))
+    },
     ..Spec::EMPTY
 };
 
@@ -68,65 +99,6 @@ const LIMITS: [f64; 15] = [0.2, 0.27, 0.36, 0.45, 0.55, 0.65, 0.73, 0.8, 0.83, 0
 /// The limits that are tried first beside [`LIMITS`]: a position loop may command many times the torque that the drive can give.
 const WOUND_UP: [f64; 7] = [0.027, 0.036, 0.048, 0.064, 0.085, 0.11, 0.15];
 
-impl EffectKind for TorqueSaturation {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            for share in WOUND_UP.into_iter().chain(LIMITS) {
-                let limit = share * grounds.largest[joint];
-                // A drive that gave this torque is not limited far below it.
-                if limit < BELOW_NEED * grounds.needed[joint] {
-                    continue;
-                }
-                let terms = vec![Term::on(&EXCESS, joint).sized([limit])];
-                forms.push(Form::on(Turn::Limit, joint, terms));
-            }
-        }
-        forms
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // A drive is at its limit for a part of the time only.
-        CUT_OFF.contains(&fitted.value(0)) && acting(fitted) < MOST_CLIPPED && cuts(fitted)
-    }
-
-    fn is_contradicted(&self, effect: &Effect, beside: &[Effect]) -> bool {
-        let is_here = |other: &&Effect| other.joint() == effect.joint();
-        let friction = beside.iter().filter(is_here);
-        let friction: f64 = friction.filter_map(|other| other.kind().get().dry_friction(other)).sum();
-        effect.number("limit") < LEAST_OVER_FRICTION * friction
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let limit = estimate.terms().first()?.sizes[0];
-        let limit = estimate.size(Systematic::Usual, "limit", Size::Main, limit);
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("limit", limit))
-    }
-
-    /// The lower limit counts.
-    fn is_twin(&self, _a: &Effect, _b: &Effect) -> bool {
-        false
-    }
-
-    fn of_torque(&self, effect: &Effect, joint: usize) -> Option<Term> {
-        Some(Term::on(&EXCESS, joint).sized([effect.number("limit")]))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.limits[at.joint] = machine.limits[at.joint].min(effect.number("limit"));
-    }
-
-    fn region(&self, terms: &[Term], joint: JointKind) -> Option<String> {
-        let limit = terms.first()?.sizes[0];
-        let unit = Quantity::Torque.unit(joint);
-        Some(format!("where more than {limit:.3} {unit} are commanded"))
-    }
-}
-
 /// Whether the torque that the limit removes is the residual of the model without it, on the rows where it acts.
 fn cuts(fitted: &dyn Fitted) -> bool {
     let Some(x) = fitted.column(0) else { return true };
@@ -159,17 +131,17 @@ fn acting(fitted: &dyn Fitted) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::friction::CoulombFriction;
+    use crate::friction::COULOMB_FRICTION;
     use crate::test_support::{column, machine};
 
     /// The torque of a slow joint that has only dry friction is constant at the friction level, which resembles a limit.
     #[test]
     fn a_limit_just_above_the_dry_friction_is_refused() {
-        let limit = |limit: f64| Effect::of(&TorqueSaturation).on("a").with("limit", limit);
-        let friction = |joint: &str| Effect::of(&CoulombFriction).on(joint).with("level", 3.3);
-        assert!(TorqueSaturation.is_contradicted(&limit(3.4), &[friction("a")]));
-        assert!(!TorqueSaturation.is_contradicted(&limit(3.4), &[friction("b")]));
-        assert!(!TorqueSaturation.is_contradicted(&limit(6.6), &[friction("a")]));
+        let limit = |limit: f64| Effect::of(&TORQUE_SATURATION).on("a").with("limit", limit);
+        let friction = |joint: &str| Effect::of(&COULOMB_FRICTION).on(joint).with("level", 3.3);
+        assert!((TORQUE_SATURATION.is_contradicted)(&limit(3.4), &[friction("a")]));
+        assert!(!(TORQUE_SATURATION.is_contradicted)(&limit(3.4), &[friction("b")]));
+        assert!(!(TORQUE_SATURATION.is_contradicted)(&limit(6.6), &[friction("a")]));
     }
 
     #[test]
@@ -183,7 +155,7 @@ mod tests {
 
     #[test]
     fn its_column_is_the_clipped_torque() {
-        let effect = Effect::of(&TorqueSaturation).on("a").with("limit", 2.5);
+        let effect = Effect::of(&TORQUE_SATURATION).on("a").with("limit", 2.5);
         assert_eq!(machine(&effect).limits, [2.5, f64::INFINITY]);
         let (cut, tau) = column(&Term::on(&EXCESS, 0).sized([2.5]), 0);
         for (cut, tau) in cut.iter().zip(tau) {

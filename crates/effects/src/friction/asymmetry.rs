@@ -2,19 +2,13 @@
 
 use super::thermal::WARMING;
 use crate::laws::{ABS_SIGN, SIGN};
-use crate::{
-    Against, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity, Spec, Term,
-    Turn,
-};
-
-/// τ = positive while q̇ > 0, −negative while q̇ < 0.
-#[derive(Debug)]
-pub struct FrictionAsymmetry;
+use crate::{Against, Dry, Parameter, Quantity, Spec, Term, Turn};
 
 /// The experiment that distinguishes a torque offset from friction where no motion does.
 const BRAKE: &str = "read the torque with the brake closed and no current: a torque offset persists, friction does not";
 
-static SPEC: Spec = Spec {
+/// τ = positive while q̇ > 0, −negative while q̇ < 0.
+pub static FRICTION_ASYMMETRY: Spec = Spec {
     name: "friction_asymmetry",
     title: "asymmetric friction",
     meaning: "Coulomb friction that differs between the two directions of motion",
@@ -32,6 +26,45 @@ static SPEC: Spec = Spec {
     is_baseline_or_constant: true,
     against: Against::Speed,
     experiments_against: &[("torque_offset", BRAKE), ("spring", BRAKE)],
+    forms: |grounds| {
+        grounds.on_moving(Turn::Friction, |joint| vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)])
+    },
+    is_possible: |fitted| {
+        // No motion distinguishes an asymmetry from a torque offset, which every sensor has, so that the relative size
+        // decides between them.
+        let part = fitted.value(1).abs() / fitted.value(0);
+        fitted.value(0) > 0.0 && (LEAST_PART..MOST_PART).contains(&part)
+    },
+    read: |effect, estimate| {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        // If another effect states the Coulomb level, the parameters give only the difference between the directions.
+        let is_whole = estimate.level_beside(&[&WARMING]) > 0.0;
+        let level = |draw: &[f64]| if is_whole { draw[a] } else { draw[b].abs() };
+        let positive = estimate.note("positive", |draw| level(draw) + draw[b]);
+        let negative = estimate.note("negative", |draw| level(draw) - draw[b]);
+        Some(effect.with("positive", positive).with("negative", negative))
+    },
+    refuse: |effect| {
+        let sum = effect.number("positive") + effect.number("negative");
+        (sum < 0.0).then_some(("positive + negative", sum, "finite and not negative"))
+    },
+    // If another dry friction of the joint states the Coulomb level, this one states only by how much one direction
+    // exceeds the other.
+    own_sentence: |effect| {
+        if effect.number("negative") == 0.0 {
+            Some("dry friction that is larger by {positive} forwards than backwards")
+        } else if effect.number("positive") == 0.0 {
+            Some("dry friction that is larger by {negative} backwards than forwards")
+        } else {
+            None
+        }
+    },
+    dry_friction: |effect| Some(0.5 * (effect.number("positive") + effect.number("negative"))),
+    apply: |effect, at, machine| {
+        let (positive, negative) = (effect.number("positive"), effect.number("negative"));
+        let dry = Dry::new(move |_, _| 0.5 * (positive + negative)).biased(0.5 * (positive - negative));
+        machine.dry.push((at.joint, dry));
+    },
     ..Spec::EMPTY
 };
 
@@ -43,73 +76,15 @@ const LEAST_PART: f64 = 0.12;
 /// no bearing has.
 const MOST_PART: f64 = 0.6;
 
-impl EffectKind for FrictionAsymmetry {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| {
-            let terms = vec![Term::on(&SIGN, joint), Term::on(&ABS_SIGN, joint)];
-            Form::on(Turn::Friction, joint, terms)
-        };
-        grounds.moving().map(form).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        // No motion distinguishes an asymmetry from a torque offset, which every sensor has, so that the relative size
-        // decides between them.
-        let part = fitted.value(1).abs() / fitted.value(0);
-        fitted.value(0) > 0.0 && (LEAST_PART..MOST_PART).contains(&part)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
-        let effect = Effect::of(&Self).on(estimate.joint_name());
-        // If another effect states the Coulomb level, the parameters give only the difference between the directions.
-        let is_whole = estimate.level_beside(&[&WARMING]) > 0.0;
-        let level = |draw: &[f64]| if is_whole { draw[a] } else { draw[b].abs() };
-        let positive = estimate.note("positive", |draw| level(draw) + draw[b]);
-        let negative = estimate.note("negative", |draw| level(draw) - draw[b]);
-        Some(effect.with("positive", positive).with("negative", negative))
-    }
-
-    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let sum = effect.number("positive") + effect.number("negative");
-        (sum < 0.0).then_some(("positive + negative", sum, "finite and not negative"))
-    }
-
-    /// If another dry friction of the joint states the Coulomb level, this one states only by how much one direction
-    /// exceeds the other.
-    fn sentence(&self, effect: &Effect) -> &'static str {
-        if effect.number("negative") == 0.0 {
-            "dry friction that is larger by {positive} forwards than backwards"
-        } else if effect.number("positive") == 0.0 {
-            "dry friction that is larger by {negative} backwards than forwards"
-        } else {
-            SPEC.sentence
-        }
-    }
-
-    fn dry_friction(&self, effect: &Effect) -> Option<f64> {
-        Some(0.5 * (effect.number("positive") + effect.number("negative")))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let (positive, negative) = (effect.number("positive"), effect.number("negative"));
-        let dry = Dry::new(move |_, _| 0.5 * (positive + negative)).biased(0.5 * (positive - negative));
-        machine.dry.push((at.joint, dry));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&FrictionAsymmetry).on("a");
+        let effect = Effect::of(&FRICTION_ASYMMETRY).on("a");
         let effect = effect.with("positive", 3.0).with("negative", 1.0);
         agree(&effect, &[(Term::on(&SIGN, 0), 2.0), (Term::on(&ABS_SIGN, 0), 1.0)]);
     }

@@ -1,16 +1,10 @@
 //! Coulomb friction.
 
 use crate::laws::SIGN;
-use crate::{
-    Against, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, InUrdf, Machine, Parameter, Place, Quantity,
-    Range, Spec, Term, Turn,
-};
+use crate::{Against, Dry, InUrdf, Parameter, Quantity, Range, Spec, Term, Turn};
 
 /// τ = level sgn q̇.
-#[derive(Debug)]
-pub struct CoulombFriction;
-
-static SPEC: Spec = Spec {
+pub static COULOMB_FRICTION: Spec = Spec {
     name: "coulomb_friction",
     title: "Coulomb friction",
     meaning: "dry friction: a torque of constant magnitude against the motion",
@@ -27,50 +21,30 @@ static SPEC: Spec = Spec {
     in_urdf: InUrdf::Friction,
     against: Against::Speed,
     not_testable_turn: 0,
-    ..Spec::EMPTY
-};
-
-impl EffectKind for CoulombFriction {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint)]);
-        grounds.moving().map(form).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(0) > 0.0
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+    forms: |grounds| grounds.on_moving(Turn::Friction, |joint| vec![Term::on(&SIGN, joint)]),
+    is_possible: |fitted| fitted.value(0) > 0.0,
+    read: |effect, estimate| {
         let level = estimate.coefficient("level", estimate.place(0), 1.0);
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("level", level))
-    }
-
-    fn dry_friction(&self, effect: &Effect) -> Option<f64> {
-        Some(effect.number("level"))
-    }
-
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(a.clone().with("level", a.number("level") + b.number("level")))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        Some(effect.with("level", level))
+    },
+    dry_friction: |effect| Some(effect.number("level")),
+    sum: |a, b| Some(a.clone().with("level", a.number("level") + b.number("level"))),
+    apply: |effect, at, machine| {
         let level = effect.number("level");
         machine.dry.push((at.joint, Dry::new(move |_, _| level)));
-    }
-}
+    },
+    ..Spec::EMPTY
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_column_is_its_torque() {
-        let effect = Effect::of(&CoulombFriction).on("a").with("level", 2.0);
+        let effect = Effect::of(&COULOMB_FRICTION).on("a").with("level", 2.0);
         agree(&effect, &[(Term::on(&SIGN, 0), 2.0)]);
     }
 }

@@ -2,16 +2,10 @@
 
 use super::thermal::WARMING;
 use crate::laws::{ABS_SIGN, SIGN};
-use crate::{
-    Against, Cone, Detectability, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter,
-    Place, Quantity, Range, Spec, Systematic, Term, Turn,
-};
+use crate::{Against, Cone, Detectability, Dry, Fitted, Law, Parameter, Quantity, Range, Spec, Systematic, Term, Turn};
 
 /// τ = (coulomb + gain |τ rigid|) sgn q̇; τ rigid is what the gear transmits to the links, without the rotor's own torque.
-#[derive(Debug)]
-pub struct LoadDependentFriction;
-
-static SPEC: Spec = Spec {
+pub static LOAD_DEPENDENT_FRICTION: Spec = Spec {
     name: "load_dependent_friction",
     title: "load-dependent friction",
     meaning: "gear friction that grows with the torque transmitted by the gear",
@@ -30,6 +24,29 @@ static SPEC: Spec = Spec {
     against: Against::LoadAlong,
     detectability: Detectability::LINEAR,
     not_testable_turn: 9,
+    forms: |grounds| {
+        grounds.on_moving(Turn::Friction, |joint| vec![Term::on(&SIGN, joint), Term::on(&LOAD_SIGN, joint)])
+    },
+    is_possible: |fitted| {
+        fitted.value(1) > 0.0
+            && fitted.value(1) < LARGEST_GAIN
+            && fitted.value(0) > -BELOW_ZERO * fitted.value(1) * load(fitted)
+    },
+    read: |effect, estimate| {
+        let level = estimate.level_beside(&[&WARMING, &ABS_SIGN]);
+        let coulomb = estimate.coefficient("coulomb", estimate.place(0), level);
+        let place = estimate.place(1)?;
+        let gain = estimate.note_within(Systematic::OfArm, "gain", &|draw| draw[place]);
+        Some(effect.with("coulomb", coulomb).with("gain", gain))
+    },
+    // If another dry friction of the joint states the Coulomb level, this one states only the part that grows with the
+    // load.
+    own_sentence: |effect| (effect.number("coulomb") == 0.0).then_some("dry friction of {gain} times the load torque"),
+    apply: |effect, at, machine| {
+        let (coulomb, gain) = (effect.number("coulomb"), effect.number("gain"));
+        let dry = Dry::new(move |_, at| coulomb + gain * at.load.abs()).loaded();
+        machine.dry.push((at.joint, dry));
+    },
     ..Spec::EMPTY
 };
 
@@ -48,47 +65,6 @@ const LARGEST_GAIN: f64 = 1.0;
 /// diagnosis.
 const BELOW_ZERO: f64 = 0.1;
 
-impl EffectKind for LoadDependentFriction {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| {
-            let terms = vec![Term::on(&SIGN, joint), Term::on(&LOAD_SIGN, joint)];
-            Form::on(Turn::Friction, joint, terms)
-        };
-        grounds.moving().map(form).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(1) > 0.0
-            && fitted.value(1) < LARGEST_GAIN
-            && fitted.value(0) > -BELOW_ZERO * fitted.value(1) * load(fitted)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let level = estimate.level_beside(&[&WARMING, &ABS_SIGN]);
-        let coulomb = estimate.coefficient("coulomb", estimate.place(0), level);
-        let place = estimate.place(1)?;
-        let gain = estimate.note_within(Systematic::OfArm, "gain", &|draw| draw[place]);
-        let effect = Effect::of(&Self).on(estimate.joint_name());
-        Some(effect.with("coulomb", coulomb).with("gain", gain))
-    }
-
-    /// If another dry friction of the joint states the Coulomb level, this one states only the part that grows with the
-    /// load.
-    fn sentence(&self, effect: &Effect) -> &'static str {
-        if effect.number("coulomb") == 0.0 { "dry friction of {gain} times the load torque" } else { SPEC.sentence }
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let (coulomb, gain) = (effect.number("coulomb"), effect.number("gain"));
-        let dry = Dry::new(move |_, at| coulomb + gain * at.load.abs()).loaded();
-        machine.dry.push((at.joint, dry));
-    }
-}
-
 /// The mean of the absolute load.
 fn load(fitted: &dyn Fitted) -> f64 {
     fitted.column(1).map_or(0.0, |x| x.iter().map(|v| v.abs()).sum::<f64>() / x.len().max(1) as f64)
@@ -97,11 +73,12 @@ fn load(fitted: &dyn Fitted) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&LoadDependentFriction).on("a");
+        let effect = Effect::of(&LOAD_DEPENDENT_FRICTION).on("a");
         let effect = effect.with("coulomb", 0.5).with("gain", 0.1);
         agree(&effect, &[(Term::on(&SIGN, 0), 0.5), (Term::on(&LOAD_SIGN, 0), 0.1)]);
     }

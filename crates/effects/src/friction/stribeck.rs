@@ -1,21 +1,13 @@
 //! Stribeck friction: dry friction that is larger at very low speed.
 
-use ::arm::JointKind;
-
 use super::load_dependent::LOAD_SIGN;
 use super::thermal::WARMING;
 use crate::background::FRICTION_CURVE;
 use crate::laws::{ABS_SIGN, SIGN};
-use crate::{
-    Against, Cone, Dry, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Size, Spec, Systematic, Term, Turn,
-};
+use crate::{Against, Cone, Dry, Fitted, Form, Law, Parameter, Quantity, Range, Size, Spec, Systematic, Term, Turn};
 
 /// τ = (coulomb + (breakaway − coulomb) e^(−|q̇/velocity|^exponent)) sgn q̇.
-#[derive(Debug)]
-pub struct StribeckFriction;
-
-static SPEC: Spec = Spec {
+pub static STRIBECK_FRICTION: Spec = Spec {
     name: "stribeck_friction",
     title: "Stribeck friction",
     meaning: "Coulomb friction that is larger at very low speed (breakaway) than in fast motion",
@@ -31,6 +23,56 @@ static SPEC: Spec = Spec {
     main: &["breakaway"],
     generalises: Some("coulomb_friction"),
     against: Against::Speed,
+    forms: |grounds| {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for share in VELOCITIES {
+                for exponent in EXPONENTS {
+                    let fading = Term::on(&FADING, joint).sized([share * grounds.scales.speed[joint], exponent]);
+                    forms.push(Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint), fading]));
+                }
+            }
+        }
+        forms
+    },
+    is_possible: |fitted| {
+        let (coulomb, falling) = (fitted.value(0), fitted.value(1));
+        let is_slow = fitted.term(1).sizes[0] <= FASTEST;
+        is_slow && falling > 0.0 && coulomb > LEAST_COULOMB * falling && fades(fitted) && falls(fitted)
+    },
+    read: |effect, estimate| {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let second = *estimate.terms().get(1)?;
+        let [velocity, exponent, ..] = second.sizes;
+        let level = estimate.level_beside(&[&WARMING, &ABS_SIGN, &LOAD_SIGN]);
+        let coulomb = estimate.note("coulomb", |draw| level * draw[a]);
+        let breakaway = estimate.note_within(Systematic::OfForm, "breakaway", &|draw| level * draw[a] + draw[b]);
+        let velocity = estimate.size(Systematic::OfForm, "velocity", Size::Main, velocity);
+        if estimate.shown(1) < FULLY_SHOWN {
+            estimate.extend("breakaway", coulomb + EXTRAPOLATED * (breakaway - coulomb));
+            estimate.extend("velocity", velocity / EXTRAPOLATED);
+        }
+        let effect = effect.with("coulomb", coulomb).with("breakaway", breakaway);
+        Some(effect.with("velocity", velocity).with("exponent", exponent))
+    },
+    // If another dry friction of the joint states the Coulomb level, this one states only the additional breakaway
+    // friction.
+    own_sentence: |effect| {
+        let text = "dry friction that is larger by {breakaway} at breakaway than in motion, \
+             with a Stribeck velocity of {velocity}";
+        (effect.number("coulomb") == 0.0).then_some(text)
+    },
+    dry_friction: |effect| Some(effect.number("coulomb")),
+    apply: |effect, at, machine| {
+        let [coulomb, breakaway, velocity, exponent] =
+            ["coulomb", "breakaway", "velocity", "exponent"].map(|key| effect.number(key));
+        let level = move |qd: f64, _| coulomb + (breakaway - coulomb) * fading(qd, velocity, exponent);
+        machine.dry.push((at.joint, Dry::new(level)));
+    },
+    region: |terms, joint| {
+        let speed = 2.0 * velocity(terms)?;
+        Some(format!("below about {speed:.3} {}", Quantity::Speed.unit(joint)))
+    },
     ..Spec::EMPTY
 };
 
@@ -96,74 +138,6 @@ const VELOCITIES: [f64; 6] = [0.05, 0.08, 0.12, 0.18, 0.27, 0.4];
 /// The exponents that are tried first.
 const EXPONENTS: [f64; 2] = [1.0, 2.0];
 
-impl EffectKind for StribeckFriction {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            for share in VELOCITIES {
-                for exponent in EXPONENTS {
-                    let fading = Term::on(&FADING, joint).sized([share * grounds.scales.speed[joint], exponent]);
-                    forms.push(Form::on(Turn::Friction, joint, vec![Term::on(&SIGN, joint), fading]));
-                }
-            }
-        }
-        forms
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        let (coulomb, falling) = (fitted.value(0), fitted.value(1));
-        let is_slow = fitted.term(1).sizes[0] <= FASTEST;
-        is_slow && falling > 0.0 && coulomb > LEAST_COULOMB * falling && fades(fitted) && falls(fitted)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
-        let second = *estimate.terms().get(1)?;
-        let [velocity, exponent, ..] = second.sizes;
-        let effect = Effect::of(&Self).on(estimate.joint_name());
-        let level = estimate.level_beside(&[&WARMING, &ABS_SIGN, &LOAD_SIGN]);
-        let coulomb = estimate.note("coulomb", |draw| level * draw[a]);
-        let breakaway = estimate.note_within(Systematic::OfForm, "breakaway", &|draw| level * draw[a] + draw[b]);
-        let velocity = estimate.size(Systematic::OfForm, "velocity", Size::Main, velocity);
-        if estimate.shown(1) < FULLY_SHOWN {
-            estimate.extend("breakaway", coulomb + EXTRAPOLATED * (breakaway - coulomb));
-            estimate.extend("velocity", velocity / EXTRAPOLATED);
-        }
-        let effect = effect.with("coulomb", coulomb).with("breakaway", breakaway);
-        Some(effect.with("velocity", velocity).with("exponent", exponent))
-    }
-
-    /// If another dry friction of the joint states the Coulomb level, this one states only the additional breakaway
-    /// friction.
-    fn sentence(&self, effect: &Effect) -> &'static str {
-        if effect.number("coulomb") == 0.0 {
-            "dry friction that is larger by {breakaway} at breakaway than in motion, with a Stribeck velocity of {velocity}"
-        } else {
-            SPEC.sentence
-        }
-    }
-
-    fn dry_friction(&self, effect: &Effect) -> Option<f64> {
-        Some(effect.number("coulomb"))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let [coulomb, breakaway, velocity, exponent] =
-            ["coulomb", "breakaway", "velocity", "exponent"].map(|key| effect.number(key));
-        let level = move |qd: f64, _| coulomb + (breakaway - coulomb) * fading(qd, velocity, exponent);
-        machine.dry.push((at.joint, Dry::new(level)));
-    }
-
-    fn region(&self, terms: &[Term], joint: JointKind) -> Option<String> {
-        let speed = 2.0 * velocity(terms)?;
-        Some(format!("below about {speed:.3} {}", Quantity::Speed.unit(joint)))
-    }
-}
-
 /// Whether friction with the background's curve is larger at standstill than in motion. Friction that reaches its level
 /// gradually has a background that is negative at low speed, and the additional friction only corrects that curve.
 fn falls(fitted: &dyn Fitted) -> bool {
@@ -188,11 +162,12 @@ fn fades(fitted: &dyn Fitted) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&StribeckFriction).on("a").with("coulomb", 1.0);
+        let effect = Effect::of(&STRIBECK_FRICTION).on("a").with("coulomb", 1.0);
         let effect = effect.with("breakaway", 3.0).with("velocity", 0.7);
         let fading = Term::on(&FADING, 0).sized([0.7, 2.0]);
         agree(&effect, &[(Term::on(&SIGN, 0), 1.0), (fading, 2.0)]);

@@ -5,10 +5,7 @@ use std::f64::consts::PI;
 use ::arm::{Arm, JointKind, Workspace};
 
 use crate::laws::wave;
-use crate::{
-    Against, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place, Quantity,
-    Range, Spec, State, Term, Turn,
-};
+use crate::{Against, Experiment, Form, Law, Parameter, Quantity, Range, Spec, State, Term, Turn};
 
 /// τ = amplitude sin(q − angle).
 ///
@@ -17,10 +14,7 @@ use crate::{
 /// side. Recordings determine `amplitude`, the product K a r, and `angle`; K, a and r do not appear separately in the torque. A
 /// free length L₀ would multiply the law by 1 − L₀/L(q); this part remains in the residuals, or becomes the curve of a
 /// `spring`.
-#[derive(Debug)]
-pub struct GravityCompensator;
-
-static SPEC: Spec = Spec {
+pub static GRAVITY_COMPENSATOR: Spec = Spec {
     name: "gravity_compensator",
     title: "gravity compensator",
     meaning: "a spring on a lever that carries a part of the arm's weight (counterbalance)",
@@ -38,7 +32,8 @@ static SPEC: Spec = Spec {
     against: Against::Position,
     experiment: Some(Experiment {
         rank: 1,
-        text: "sweep the joint slowly over more of its range: a straight spring goes on rising where a lever's torque turns back",
+        text: "sweep the joint slowly over more of its range: \
+               a straight spring goes on rising where a lever's torque turns back",
     }),
     may_be_inertial: true,
     // Few joints have a gravity compensator. Of five that were named in simulated cases of two engines, none was right: three
@@ -47,6 +42,39 @@ static SPEC: Spec = Spec {
     least_beside_inertials: Some(25.0),
     // Neither of two in the cases of `torque_scale` was right; they were up to 4.2 times as large.
     least_beside_residual: Some(6.0),
+    forms: |grounds| {
+        let far = |&joint: &usize| grounds.scales.range[joint] > SMALLEST_RANGE;
+        let form = |joint| Form::on(Turn::Position, joint, columns(joint));
+        grounds.moving().filter(far).map(form).collect()
+    },
+    // The joint must be revolute and carry weight; the torque must act against that weight, and must not be much larger.
+    is_possible: |fitted| {
+        let Some(joint) = fitted.term(0).joint else {
+            return false;
+        };
+        let [sin, cos] = weight(fitted.arm(), joint);
+        let [a, b] = [fitted.value(0), fitted.value(1)];
+        let turns = fitted.arm().joints()[joint].kind == JointKind::Revolute;
+        turns && a * sin + b * cos < 0.0 && a.hypot(b) < MOST_CARRIED * sin.hypot(cos)
+    },
+    read: |effect, estimate| {
+        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
+        let about = (-estimate.best()[b]).atan2(estimate.best()[a]);
+        let amplitude = estimate.note("amplitude", |draw| draw[a].hypot(draw[b]));
+        // Draws of the angle stay within half a turn of the estimate.
+        let angle = estimate.note("angle", |draw| {
+            let by = (-draw[b]).atan2(draw[a]) - about;
+            about + by.sin().atan2(by.cos())
+        });
+        Some(effect.with("amplitude", amplitude).with("angle", angle))
+    },
+    // Two of them add up, such as one of a file of known effects and one that is found in addition to it.
+    is_twin: |a, b| a == b,
+    apply: |effect, at, machine| {
+        let [amplitude, angle] = ["amplitude", "angle"].map(|key| effect.number(key));
+        let torque = move |joint: usize, state: State<'_>| amplitude * wave(state.q[joint] - angle, false);
+        machine.add_torque(at.joint, effect.onset(), torque);
+    },
     ..Spec::EMPTY
 };
 
@@ -86,61 +114,15 @@ fn weight(arm: &Arm, joint: usize) -> [f64; 2] {
     sums
 }
 
-impl EffectKind for GravityCompensator {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let far = |&joint: &usize| grounds.scales.range[joint] > SMALLEST_RANGE;
-        let form = |joint| Form::on(Turn::Position, joint, columns(joint));
-        grounds.moving().filter(far).map(form).collect()
-    }
-
-    /// The joint must be revolute and carry weight; the torque must act against that weight, and must not be much larger.
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        let Some(joint) = fitted.term(0).joint else {
-            return false;
-        };
-        let [sin, cos] = weight(fitted.arm(), joint);
-        let [a, b] = [fitted.value(0), fitted.value(1)];
-        let turns = fitted.arm().joints()[joint].kind == JointKind::Revolute;
-        turns && a * sin + b * cos < 0.0 && a.hypot(b) < MOST_CARRIED * sin.hypot(cos)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let (a, b) = (estimate.place(0)?, estimate.place(1)?);
-        let about = (-estimate.best()[b]).atan2(estimate.best()[a]);
-        let amplitude = estimate.note("amplitude", |draw| draw[a].hypot(draw[b]));
-        // Draws of the angle stay within half a turn of the estimate.
-        let angle = estimate.note("angle", |draw| {
-            let by = (-draw[b]).atan2(draw[a]) - about;
-            about + by.sin().atan2(by.cos())
-        });
-        let effect = Effect::of(&Self).on(estimate.joint_name());
-        Some(effect.with("amplitude", amplitude).with("angle", angle))
-    }
-
-    /// Two of them add up, such as one of a file of known effects and one that is found in addition to it.
-    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a == b
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let [amplitude, angle] = ["amplitude", "angle"].map(|key| effect.number(key));
-        let torque = move |joint: usize, state: State<'_>| amplitude * wave(state.q[joint] - angle, false);
-        machine.add_torque(at.joint, effect.onset(), torque);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&GravityCompensator).on("a").with("amplitude", 8.0);
+        let effect = Effect::of(&GRAVITY_COMPENSATOR).on("a").with("amplitude", 8.0);
         let effect = effect.with("angle", 0.4);
         let columns = columns(0);
         agree(&effect, &[(columns[0], 8.0 * 0.4_f64.cos()), (columns[1], -8.0 * 0.4_f64.sin())]);

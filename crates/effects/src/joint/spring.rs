@@ -2,15 +2,11 @@
 
 use crate::laws::{ONE, POSITION, TENT, power, tent};
 use crate::{
-    Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
-    SetsIn, Shape, Spec, State, Term, Times, Turn,
+    Against, Detectability, Effect, Fitted, Form, Parameter, Quantity, SetsIn, Shape, Spec, State, Term, Times, Turn,
 };
 
 /// τ = stiffness (q − rest); for a nonlinear spring, a curve through (q, τ) points: linear between them, constant beyond.
-#[derive(Debug)]
-pub struct Spring;
-
-static SPEC: Spec = Spec {
+pub static SPRING: Spec = Spec {
     name: "spring",
     title: "spring",
     meaning: "a torque that depends on the joint's position (counterbalance, gas spring, cable)",
@@ -32,6 +28,67 @@ static SPEC: Spec = Spec {
     against: Against::Position,
     detectability: Detectability::LINEAR,
     not_testable_turn: 11,
+    forms: |grounds| {
+        let forms = |joint| {
+            [
+                Form::on(Turn::Position, joint, columns(joint, &[1])),
+                Form::on(Turn::Position, joint, columns(joint, &[1, 2, 3])),
+                // A curve that rises throughout is a spring; any other curve is an unmodelled form.
+                Form::on(Turn::Curve, joint, grounds.tents(joint, joint, POINTS, Times::One)),
+            ]
+        };
+        grounds.moving().flat_map(forms).collect()
+    },
+    sets_in: Some(SetsIn { turn: 2, forms: |joint| vec![columns(joint, &[1])], looked_for_with: 2 }),
+    is_possible: |fitted| stiffens(fitted) && rests_in_reach(fitted),
+    read: |effect, estimate| {
+        let [low, high] = estimate.positions();
+        let terms = estimate.terms();
+        let shape: Vec<(Term, Option<usize>)> =
+            terms.into_iter().enumerate().map(|(k, term)| (term.always(), estimate.place(k))).collect();
+        let torque = |draw: &[f64], q: f64| -> f64 {
+            let drawn = |&(term, place): &(Term, Option<usize>)| (term, place.map_or(0.0, |place| draw[place]));
+            torque(&shape.iter().map(drawn).collect::<Vec<_>>(), q)
+        };
+        let slope = |draw: &[f64]| (torque(draw, high) - torque(draw, low)) / (high - low);
+        let stiffness = estimate.note("stiffness", slope);
+        let middle = 0.5 * (low + high);
+        let rest = estimate.note("rest", |draw| middle - torque(draw, middle) / slope(draw));
+        let points = if shape.len() == 2 { 0 } else { POINTS };
+        let curve: Vec<[f64; 2]> = (0..points)
+            .map(|k| {
+                let q = low + (high - low) * k as f64 / (points - 1) as f64;
+                [q, torque(estimate.best(), q)]
+            })
+            .collect();
+        let effect = effect.with("stiffness", stiffness);
+        Some(effect.with("rest", rest).with("curve", curve).since(estimate.onset()))
+    },
+    refuse: |effect| {
+        let pair = effect.points("curve").windows(2).find(|pair| pair[1][0] <= pair[0][0])?;
+        Some(("curve's next angle", pair[1][0], "larger than the one before"))
+    },
+    // A straight spring and a curve on one joint are not the same effect.
+    // Two springs without a curve are one spring, with the zero of their common torque.
+    sum: |a, b| {
+        let have_no_curve = [a, b].iter().all(|spring| spring.points("curve").is_empty());
+        let stiffness = a.number("stiffness") + b.number("stiffness");
+        let torque = |spring: &Effect| spring.number("stiffness") * spring.number("rest");
+        let rest = (torque(a) + torque(b)) / stiffness;
+        (have_no_curve && rest.is_finite()).then(|| a.clone().with("stiffness", stiffness).with("rest", rest))
+    },
+    is_twin: |a, b| a == b || [a, b].iter().all(|spring| spring.points("curve").is_empty()),
+    apply: |effect, at, machine| {
+        let points = effect.points("curve").to_vec();
+        if points.is_empty() {
+            let (stiffness, rest) = (effect.number("stiffness"), effect.number("rest"));
+            let torque = move |joint: usize, state: State<'_>| stiffness * (state.q[joint] - rest);
+            machine.add_torque(at.joint, effect.onset(), torque);
+        } else {
+            let torque = move |joint: usize, state: State<'_>| interpolate(&points, state.q[joint]);
+            machine.add_torque(at.joint, effect.onset(), torque);
+        }
+    },
     ..Spec::EMPTY
 };
 
@@ -60,87 +117,6 @@ const BEYOND: f64 = 1.0;
 fn columns(joint: usize, powers: &[usize]) -> Vec<Term> {
     let powers = powers.iter().map(|&power| Term::on(&POSITION, joint).form(power));
     std::iter::once(Term::on(&ONE, joint)).chain(powers).collect()
-}
-
-impl EffectKind for Spring {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let forms = |joint| {
-            [
-                Form::on(Turn::Position, joint, columns(joint, &[1])),
-                Form::on(Turn::Position, joint, columns(joint, &[1, 2, 3])),
-                // A curve that rises throughout is a spring; any other curve is an unmodelled form.
-                Form::on(Turn::Curve, joint, grounds.tents(joint, joint, POINTS, Times::One)),
-            ]
-        };
-        grounds.moving().flat_map(forms).collect()
-    }
-
-    fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn { turn: 2, forms: |joint| vec![columns(joint, &[1])], looked_for_with: 2 })
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        stiffens(fitted) && rests_in_reach(fitted)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let [low, high] = estimate.positions();
-        let terms = estimate.terms();
-        let shape: Vec<(Term, Option<usize>)> =
-            terms.into_iter().enumerate().map(|(k, term)| (term.always(), estimate.place(k))).collect();
-        let torque = |draw: &[f64], q: f64| -> f64 {
-            let drawn = |&(term, place): &(Term, Option<usize>)| (term, place.map_or(0.0, |place| draw[place]));
-            torque(&shape.iter().map(drawn).collect::<Vec<_>>(), q)
-        };
-        let slope = |draw: &[f64]| (torque(draw, high) - torque(draw, low)) / (high - low);
-        let stiffness = estimate.note("stiffness", slope);
-        let middle = 0.5 * (low + high);
-        let rest = estimate.note("rest", |draw| middle - torque(draw, middle) / slope(draw));
-        let points = if shape.len() == 2 { 0 } else { POINTS };
-        let curve: Vec<[f64; 2]> = (0..points)
-            .map(|k| {
-                let q = low + (high - low) * k as f64 / (points - 1) as f64;
-                [q, torque(estimate.best(), q)]
-            })
-            .collect();
-        let effect = Effect::of(&Self).on(estimate.joint_name()).with("stiffness", stiffness);
-        Some(effect.with("rest", rest).with("curve", curve).since(estimate.onset()))
-    }
-
-    fn refuse(&self, effect: &Effect) -> Option<(&'static str, f64, &'static str)> {
-        let pair = effect.points("curve").windows(2).find(|pair| pair[1][0] <= pair[0][0])?;
-        Some(("curve's next angle", pair[1][0], "larger than the one before"))
-    }
-
-    /// A straight spring and a curve on one joint are not the same effect.
-    /// Two springs without a curve are one spring, with the zero of their common torque.
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        let have_no_curve = [a, b].iter().all(|spring| spring.points("curve").is_empty());
-        let stiffness = a.number("stiffness") + b.number("stiffness");
-        let torque = |spring: &Effect| spring.number("stiffness") * spring.number("rest");
-        let rest = (torque(a) + torque(b)) / stiffness;
-        (have_no_curve && rest.is_finite()).then(|| a.clone().with("stiffness", stiffness).with("rest", rest))
-    }
-
-    fn is_twin(&self, a: &Effect, b: &Effect) -> bool {
-        a == b || [a, b].iter().all(|spring| spring.points("curve").is_empty())
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        let points = effect.points("curve").to_vec();
-        if points.is_empty() {
-            let (stiffness, rest) = (effect.number("stiffness"), effect.number("rest"));
-            let torque = move |joint: usize, state: State<'_>| stiffness * (state.q[joint] - rest);
-            machine.add_torque(at.joint, effect.onset(), torque);
-        } else {
-            let torque = move |joint: usize, state: State<'_>| interpolate(&points, state.q[joint]);
-            machine.add_torque(at.joint, effect.onset(), torque);
-        }
-    }
 }
 
 /// Linear between points in order of their first number, constant beyond; 0 without points.
@@ -244,7 +220,7 @@ mod tests {
 
     #[test]
     fn its_columns_are_its_torque() {
-        let effect = Effect::of(&Spring).on("a").with("stiffness", 10.0).with("rest", 0.2);
+        let effect = Effect::of(&SPRING).on("a").with("stiffness", 10.0).with("rest", 0.2);
         let columns = columns(0, &[1]);
         agree(&effect, &[(columns[0], -2.0), (columns[1], 10.0)]);
     }
@@ -296,7 +272,7 @@ mod tests {
 <axis xyz="0 0 1"/>{limit}</joint><link name="l"><inertial><mass value="1"/>
 <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link></robot>"#
             );
-            Spring.is_possible(&Straight {
+            (SPRING.is_possible)(&Straight {
                 arm: ::arm::Arm::from_urdf_text(&urdf, "one.urdf").expect("it is an arm"),
                 values: [-2.0 * rest, 2.0],
                 columns: [vec![1.0; 3], vec![-0.5, 0.1, 0.5]],

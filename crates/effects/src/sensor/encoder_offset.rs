@@ -1,15 +1,9 @@
 //! An encoder whose zero differs from the model's.
 
-use crate::{
-    Detectability, Effect, EffectKind, Estimate, Experiment, Fitted, Form, Grounds, Law, Machine, Parameter, Place,
-    Quantity, Spec, Term, Turn,
-};
+use crate::{Detectability, Experiment, Law, Parameter, Quantity, Spec, Term, Turn};
 
 /// The encoder reports the true position plus `offset`.
-#[derive(Debug)]
-pub struct EncoderOffset;
-
-static SPEC: Spec = Spec {
+pub static ENCODER_OFFSET: Spec = Spec {
     name: "encoder_offset",
     title: "encoder offset",
     meaning: "the zero of the joint's encoder differs from the model's",
@@ -30,6 +24,15 @@ static SPEC: Spec = Spec {
     }),
     detectability: Detectability::LINEAR,
     not_testable_turn: 12,
+    forms: |grounds| grounds.on_moving(Turn::Zero, |joint| vec![Term::about(&SLOPE, joint)]),
+    is_possible: |fitted| fitted.value(0).abs() < LARGEST_OFFSET,
+    read: |effect, estimate| {
+        // The column is the derivative with respect to the true position; the encoder's offset has the opposite sign.
+        let offset = estimate.coefficient("offset", estimate.place(0), -1.0);
+        Some(effect.with("offset", offset))
+    },
+    sum: |a, b| Some(a.clone().with("offset", a.number("offset") + b.number("offset"))),
+    apply: |effect, at, machine| machine.encoder_offsets[at.joint] -= effect.number("offset"),
     ..Spec::EMPTY
 };
 
@@ -46,44 +49,16 @@ pub static SLOPE: Law = Law {
 /// The largest offset (rad or m): the column is linearised about zero. Source: first diagnosis.
 const LARGEST_OFFSET: f64 = 0.2;
 
-impl EffectKind for EncoderOffset {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| Form::on(Turn::Zero, joint, vec![Term::about(&SLOPE, joint)]);
-        grounds.moving().map(form).collect()
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        fitted.value(0).abs() < LARGEST_OFFSET
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        // The column is the derivative with respect to the true position; the encoder's offset has the opposite sign.
-        let offset = estimate.coefficient("offset", estimate.place(0), -1.0);
-        Some(Effect::of(&Self).on(estimate.joint_name()).with("offset", offset))
-    }
-
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(a.clone().with("offset", a.number("offset") + b.number("offset")))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.encoder_offsets[at.joint] -= effect.number("offset");
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     /// The column agrees with the machine to first order, with the opposite sign.
     #[test]
     fn its_column_is_its_torque() {
-        let effect = Effect::of(&EncoderOffset).on("a").with("offset", -1e-6);
+        let effect = Effect::of(&ENCODER_OFFSET).on("a").with("offset", -1e-6);
         agree(&effect, &[(Term::about(&SLOPE, 0), 1e-6)]);
     }
 }

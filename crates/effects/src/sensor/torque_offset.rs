@@ -1,14 +1,7 @@
 //! A constant added to the measured torque.
 
 use crate::laws::ONE;
-use crate::{
-    Against, Effect, EffectKind, Estimate, Experiment, Form, Grounds, Machine, Parameter, Place, Quantity, SetsIn,
-    Spec, Term, Turn,
-};
-
-/// τ = offset.
-#[derive(Debug)]
-pub struct TorqueOffset;
+use crate::{Against, Experiment, Parameter, Quantity, SetsIn, Spec, Term, Turn};
 
 /// The experiment that distinguishes offset and scale of a torque where no motion does.
 pub(super) const KNOWN_LOAD: Experiment = Experiment {
@@ -16,7 +9,8 @@ pub(super) const KNOWN_LOAD: Experiment = Experiment {
     text: "read the torque under a known load at rest, in two poses in which gravity acts in opposite senses: their mean shows the offset, their difference the scale",
 };
 
-static SPEC: Spec = Spec {
+/// τ = offset.
+pub static TORQUE_OFFSET: Spec = Spec {
     name: "torque_offset",
     title: "torque offset",
     meaning: "a constant added to the measured torque",
@@ -39,47 +33,30 @@ static SPEC: Spec = Spec {
     least_beside_residual: Some(4.5),
     against: Against::Position,
     experiment: Some(KNOWN_LOAD),
-    ..Spec::EMPTY
-};
-
-impl EffectKind for TorqueOffset {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| Form::on(Turn::Drive, joint, vec![Term::on(&ONE, joint)]);
-        grounds.moving().map(form).collect()
-    }
-
-    fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn { turn: 0, forms: |joint| vec![vec![Term::on(&ONE, joint)]], looked_for_with: 1 })
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
+    forms: |grounds| grounds.on_moving(Turn::Drive, |joint| vec![Term::on(&ONE, joint)]),
+    sets_in: Some(SetsIn { turn: 0, forms: |joint| vec![vec![Term::on(&ONE, joint)]], looked_for_with: 1 }),
+    read: |effect, estimate| {
         let offset = estimate.coefficient("offset", estimate.place(0), 1.0);
-        let effect = Effect::of(&Self).since(estimate.onset());
-        Some(effect.on(estimate.joint_name()).with("offset", offset))
-    }
-
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(a.clone().with("offset", a.number("offset") + b.number("offset")))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
+        let onset = estimate.onset();
+        Some(effect.since(onset).with("offset", offset))
+    },
+    sum: |a, b| Some(a.clone().with("offset", a.number("offset") + b.number("offset"))),
+    apply: |effect, at, machine| {
         let offset = effect.number("offset");
         machine.add_torque(at.joint, effect.onset(), move |_, _| offset);
-    }
-}
+    },
+    ..Spec::EMPTY
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effect;
     use crate::test_support::agree;
 
     #[test]
     fn its_column_is_its_torque() {
-        let effect = Effect::of(&TorqueOffset).on("a").with("offset", -0.7);
+        let effect = Effect::of(&TORQUE_OFFSET).on("a").with("offset", -0.7);
         agree(&effect, &[(Term::on(&ONE, 0), -0.7)]);
     }
 }

@@ -2,16 +2,10 @@
 
 use super::torque_offset::KNOWN_LOAD;
 use crate::laws::RIGID;
-use crate::{
-    Against, Detectability, Effect, EffectKind, Estimate, Fitted, Form, Grounds, Machine, Parameter, Place, Quantity,
-    Range, Scaled, SetsIn, Spec, Term, Turn,
-};
+use crate::{Against, Detectability, Effect, Parameter, Quantity, Range, Scaled, SetsIn, Spec, Term, Turn};
 
 /// The measured torque is `factor` times the true one.
-#[derive(Debug)]
-pub struct TorqueScale;
-
-static SPEC: Spec = Spec {
+pub static TORQUE_SCALE: Spec = Spec {
     name: "torque_scale",
     title: "torque scale",
     meaning: "the measured torque is a constant multiple of the true torque (wrong gain or torque constant)",
@@ -40,6 +34,20 @@ static SPEC: Spec = Spec {
     // The rigid torque alone determines it, but it is a part of the joint's whole torque.
     detectability: Detectability::Linear { if_no_form: None, is_of_first: false, is_of_all_torque: true },
     not_testable_turn: 10,
+    forms: |grounds| grounds.on_moving(Turn::Drive, |joint| vec![Term::on(&RIGID, joint)]),
+    sets_in: Some(SetsIn { turn: 1, forms: |joint| vec![vec![Term::on(&RIGID, joint)]], looked_for_with: 1 }),
+    is_possible: |fitted| RELATIVE.contains(&fitted.value(0)),
+    is_certain: |effect, _, accuracy| is_beyond_tolerance(effect, accuracy),
+    read: |effect, estimate| {
+        let at = estimate.place(0)?;
+        let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
+        let onset = estimate.onset();
+        Some(effect.since(onset).with("factor", factor))
+    },
+    sum: |a, b| Some(a.clone().with("factor", a.number("factor") * b.number("factor"))),
+    apply: |effect, at, machine| {
+        machine.factors.push(Scaled { joint: at.joint, factor: effect.number("factor"), onset: effect.onset() });
+    },
     ..Spec::EMPTY
 };
 
@@ -58,44 +66,6 @@ pub(crate) fn is_beyond_tolerance(effect: &Effect, accuracy: f64) -> bool {
     (effect.number("factor") - 1.0).abs() >= USUAL_DEVIATIONS * accuracy
 }
 
-impl EffectKind for TorqueScale {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| Form::on(Turn::Drive, joint, vec![Term::on(&RIGID, joint)]);
-        grounds.moving().map(form).collect()
-    }
-
-    fn sets_in(&self) -> Option<SetsIn> {
-        Some(SetsIn { turn: 1, forms: |joint| vec![vec![Term::on(&RIGID, joint)]], looked_for_with: 1 })
-    }
-
-    fn is_possible(&self, fitted: &dyn Fitted) -> bool {
-        RELATIVE.contains(&fitted.value(0))
-    }
-
-    fn is_certain(&self, effect: &Effect, _interval: &dyn Fn(&str) -> Option<[f64; 2]>, accuracy: f64) -> bool {
-        is_beyond_tolerance(effect, accuracy)
-    }
-
-    fn read(&self, estimate: &mut dyn Estimate) -> Option<Effect> {
-        let at = estimate.place(0)?;
-        let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
-        let effect = Effect::of(&Self).since(estimate.onset());
-        Some(effect.on(estimate.joint_name()).with("factor", factor))
-    }
-
-    fn sum(&self, a: &Effect, b: &Effect) -> Option<Effect> {
-        Some(a.clone().with("factor", a.number("factor") * b.number("factor")))
-    }
-
-    fn apply(&self, effect: &Effect, at: Place, machine: &mut Machine) {
-        machine.factors.push(Scaled { joint: at.joint, factor: effect.number("factor"), onset: effect.onset() });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,8 +74,8 @@ mod tests {
     #[test]
     fn a_scale_within_the_accuracy_of_torque_constants_is_not_certain() {
         let is_certain = |factor: f64, accuracy: f64| {
-            let effect = Effect::of(&TorqueScale).on("a").with("factor", factor);
-            TorqueScale.is_certain(&effect, &|_| None, accuracy)
+            let effect = Effect::of(&TORQUE_SCALE).on("a").with("factor", factor);
+            (TORQUE_SCALE.is_certain)(&effect, &|_| None, accuracy)
         };
         assert!(!is_certain(0.937, 0.05) && !is_certain(1.052, 0.05));
         assert!(is_certain(0.92, 0.05) && is_certain(1.08, 0.05));
@@ -116,7 +86,7 @@ mod tests {
     /// The column is the rigid torque: a factor of 1.5 adds half of it.
     #[test]
     fn its_column_is_the_rigid_torque() {
-        let effect = Effect::of(&TorqueScale).on("a").with("factor", 1.5);
+        let effect = Effect::of(&TORQUE_SCALE).on("a").with("factor", 1.5);
         assert_eq!(machine(&effect).factors[0].factor, 1.5);
         let (rigid, _) = column(&Term::on(&RIGID, 0), 0);
         assert!(rigid.iter().any(|torque| *torque != 0.0));

@@ -1,12 +1,27 @@
 //! Functions of past motion.
 
-use crate::{EffectKind, Form, Grounds, Law, Regressor, Size, Spec, Term, Turn};
+use crate::{Form, Law, Regressor, Size, Spec, Term, Turn};
 
 /// A function of past motion: creeping friction, hysteresis.
-#[derive(Debug)]
-pub struct History;
-
-static SPEC: Spec = Spec { name: "history", depends_on: Some(Regressor::History), ..Spec::UNMODELLED };
+pub static HISTORY: Spec = Spec {
+    name: "history",
+    depends_on: Some(Regressor::History),
+    forms: |grounds| {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            for time in [0.1, 0.3, 1.0, 3.0] {
+                let term = |form| Term::on(&MEMORY, joint).form(form).sized([time]);
+                forms.push(Form::on(Turn::Past, joint, vec![term(0), term(1)]));
+            }
+            for share in [0.02, 0.06, 0.15, 0.35] {
+                let terms = vec![Term::on(&PLAY, joint).sized([share * grounds.scales.range[joint]])];
+                forms.push(Form::on(Turn::Past, joint, terms));
+            }
+        }
+        forms
+    },
+    ..Spec::UNMODELLED
+};
 
 /// The shortest time constant that is not attributed to friction (s). Source: `prove`, seeds 1, 2, 3, 7, 2026 and 2027.
 const SHORTEST_MEMORY: f64 = 0.1;
@@ -33,27 +48,6 @@ static MEMORY: Law = Law {
 /// The position of a drag link within its play (the size, rad or m), −1 to 1.
 static PLAY: Law =
     Law { name: "play", column: |term, joint, motion| Some(play(&motion.q[joint], term.sizes[0])), ..Law::PLAIN };
-
-impl EffectKind for History {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            for time in [0.1, 0.3, 1.0, 3.0] {
-                let term = |form| Term::on(&MEMORY, joint).form(form).sized([time]);
-                forms.push(Form::on(Turn::Past, joint, vec![term(0), term(1)]));
-            }
-            for share in [0.02, 0.06, 0.15, 0.35] {
-                let terms = vec![Term::on(&PLAY, joint).sized([share * grounds.scales.range[joint]])];
-                forms.push(Form::on(Turn::Past, joint, terms));
-            }
-        }
-        forms
-    }
-}
 
 /// A first-order low-pass filter that starts at the first value; `share` is the period of the ticks over the time constant.
 fn low_passed(signal: &[f64], share: f64) -> Vec<f64> {

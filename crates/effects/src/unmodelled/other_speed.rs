@@ -1,15 +1,24 @@
 //! Even or nonlinear functions of another joint's velocity.
 
-use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
+use crate::{Form, Law, Regressor, Spec, Term, Turn};
 
 /// An even or nonlinear function of another joint's velocity.
-#[derive(Debug)]
-pub struct OtherSpeed;
-
-static SPEC: Spec = Spec { name: "other_speed", depends_on: Some(Regressor::OtherJoint), ..Spec::UNMODELLED };
+pub static OTHER_SPEED: Spec = Spec {
+    name: "other_speed",
+    depends_on: Some(Regressor::OtherJoint),
+    has_other: true,
+    forms: |grounds| {
+        let form = |(joint, other)| {
+            let term = |form| Term::on(&SPEED_OF_OTHER, joint).of(other).form(form);
+            Form::on(Turn::Others, joint, (0..4).map(term).collect()).with(other)
+        };
+        grounds.pairs().map(form).collect()
+    },
+    ..Spec::UNMODELLED
+};
 
 /// |v|, v², v |v| and v³, v being another joint's velocity over its largest.
-static OTHER_SPEED: Law = Law {
+static SPEED_OF_OTHER: Law = Law {
     name: "other_speed",
     column: |term, _, motion| {
         let other = term.of[1];
@@ -25,21 +34,3 @@ static OTHER_SPEED: Law = Law {
     },
     ..Law::PLAIN
 };
-
-impl EffectKind for OtherSpeed {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn has_other(&self) -> bool {
-        true
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |(joint, other)| {
-            let term = |form| Term::on(&OTHER_SPEED, joint).of(other).form(form);
-            Form::on(Turn::Others, joint, (0..4).map(term).collect()).with(other)
-        };
-        grounds.pairs().map(form).collect()
-    }
-}

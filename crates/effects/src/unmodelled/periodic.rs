@@ -1,17 +1,18 @@
 //! A sinusoid in time.
 
 use crate::laws::{is_same_wave, sine_and_cosine, wave};
-use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term};
+use crate::{Law, Regressor, Spec, Term};
 
 /// A sinusoid in time.
-#[derive(Debug)]
-pub struct Periodic;
-
-static SPEC: Spec = Spec {
+pub static PERIODIC: Spec = Spec {
     name: "periodic",
     may_be_in_one_recording: true,
     is_suggested: true,
     depends_on: Some(Regressor::Time),
+    // None: the residuals suggest the frequency.
+    forms: |_| Vec::new(),
+    // Two sinusoids of nearly the same frequency are not distinguished.
+    is_same: |a, b| is_same_wave(a, b, SAME_FREQUENCY),
     ..Spec::UNMODELLED
 };
 
@@ -30,19 +31,3 @@ pub fn columns(joint: usize, omega: f64) -> Vec<Term> {
 
 /// The relative difference of frequencies below which two sinusoids are the same. Source: first diagnosis.
 const SAME_FREQUENCY: f64 = 0.1;
-
-impl EffectKind for Periodic {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    /// None: the residuals suggest the frequency.
-    fn forms(&self, _: &Grounds<'_>) -> Vec<Form> {
-        Vec::new()
-    }
-
-    /// Two sinusoids of nearly the same frequency are not distinguished.
-    fn is_same(&self, a: &Term, b: &Term) -> bool {
-        is_same_wave(a, b, SAME_FREQUENCY)
-    }
-}

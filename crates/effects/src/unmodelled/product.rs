@@ -1,16 +1,28 @@
 //! Products of position and velocity.
 
 use crate::laws::centred;
-use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Times, Turn};
+use crate::{Form, Law, Regressor, Spec, Term, Times, Turn};
 
 /// A product of position and velocity.
-#[derive(Debug)]
-pub struct Product;
-
-static SPEC: Spec = Spec { name: "product", depends_on: Some(Regressor::OwnPositionTimesSpeed), ..Spec::UNMODELLED };
+pub static PRODUCT: Spec = Spec {
+    name: "product",
+    depends_on: Some(Regressor::OwnPositionTimesSpeed),
+    forms: |grounds| {
+        let mut forms = Vec::new();
+        for joint in grounds.moving() {
+            let terms = (0..4).map(|form| Term::on(&POSITION_TIMES_SPEED, joint).form(form)).collect();
+            forms.push(Form::on(Turn::Past, joint, terms));
+            for times in [Times::Velocity, Times::Speed] {
+                forms.push(Form::on(Turn::Past, joint, grounds.tents(joint, joint, 6, times)));
+            }
+        }
+        forms
+    },
+    ..Spec::UNMODELLED
+};
 
 /// q q̇, q sgn q̇, q² sgn q̇ and q² q̇, q being the position over its range.
-static PRODUCT: Law = Law {
+static POSITION_TIMES_SPEED: Law = Law {
     name: "product",
     column: |term, joint, motion| {
         motion.map(|k| {
@@ -25,21 +37,3 @@ static PRODUCT: Law = Law {
     },
     ..Law::PLAIN
 };
-
-impl EffectKind for Product {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let mut forms = Vec::new();
-        for joint in grounds.moving() {
-            let terms = (0..4).map(|form| Term::on(&PRODUCT, joint).form(form)).collect();
-            forms.push(Form::on(Turn::Past, joint, terms));
-            for times in [Times::Velocity, Times::Speed] {
-                forms.push(Form::on(Turn::Past, joint, grounds.tents(joint, joint, 6, times)));
-            }
-        }
-        forms
-    }
-}

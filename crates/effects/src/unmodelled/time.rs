@@ -1,14 +1,27 @@
 //! Any slow function of time.
 
 use crate::laws::tent;
-use crate::{EffectKind, Form, Grounds, Law, Regressor, Spec, Term, Turn};
+use crate::{Form, Law, Regressor, Spec, Term, Turn};
 
 /// Any slow function of time.
-#[derive(Debug)]
-pub struct Time;
-
-static SPEC: Spec =
-    Spec { name: "time", may_be_in_one_recording: true, depends_on: Some(Regressor::Time), ..Spec::UNMODELLED };
+pub static TIME: Spec = Spec {
+    name: "time",
+    may_be_in_one_recording: true,
+    depends_on: Some(Regressor::Time),
+    forms: |grounds| {
+        let form = |joint| {
+            let mut moments = Vec::new();
+            for &(from, to) in grounds.times {
+                let count = ((to - from) / 4.0).ceil().clamp(2.0, 12.0) as usize;
+                let width = (to - from) / (count - 1) as f64;
+                moments.extend((0..count).map(|k| Term::on(&MOMENT, joint).sized([from + width * k as f64, width])));
+            }
+            Form::on(Turn::Past, joint, moments)
+        };
+        grounds.moving().map(form).collect()
+    },
+    ..Spec::UNMODELLED
+};
 
 /// A tent function of time; sizes are its centre and half its width (s).
 static MOMENT: Law = Law {
@@ -23,22 +36,3 @@ static MOMENT: Law = Law {
     },
     ..Law::PLAIN
 };
-
-impl EffectKind for Time {
-    fn spec(&self) -> &'static Spec {
-        &SPEC
-    }
-
-    fn forms(&self, grounds: &Grounds<'_>) -> Vec<Form> {
-        let form = |joint| {
-            let mut moments = Vec::new();
-            for &(from, to) in grounds.times {
-                let count = ((to - from) / 4.0).ceil().clamp(2.0, 12.0) as usize;
-                let width = (to - from) / (count - 1) as f64;
-                moments.extend((0..count).map(|k| Term::on(&MOMENT, joint).sized([from + width * k as f64, width])));
-            }
-            Form::on(Turn::Past, joint, moments)
-        };
-        grounds.moving().map(form).collect()
-    }
-}

@@ -113,15 +113,15 @@ pub fn table(report: &Report) -> String {
 mod tests {
     use diagnosis::{Diagnosis, Parameter, RecordingNames, Unexplained};
     use effects::Effect;
-    use effects::drive::TransmissionCoupling;
-    use effects::friction::CoulombFriction;
+    use effects::drive::TRANSMISSION_COUPLING;
+    use effects::friction::COULOMB_FRICTION;
 
     use super::*;
 
     #[test]
     fn a_size_that_may_be_zero_is_explained() {
         let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
-        let mut finding = Finding::of(Effect::of(&CoulombFriction).on("a".to_owned()));
+        let mut finding = Finding::of(Effect::of(&COULOMB_FRICTION).on("a".to_owned()));
         let level = |low: f64| Parameter { value: 0.1, ci95: [low, 0.4], unit: "N m" };
         finding.parameters.insert("level", level(0.05));
         report.findings = vec![finding.clone()];
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn residuals_and_the_other_joint_of_a_coupling_are_shown() {
         let mut report = Diagnosis::units_first("arm", RecordingNames::default(), Vec::new()).report;
-        let mut coupling = Finding::of(Effect::of(&TransmissionCoupling).on("a".to_owned()));
+        let mut coupling = Finding::of(Effect::of(&TRANSMISSION_COUPLING).on("a".to_owned()));
         coupling.other = Some("b".to_owned());
         report.findings = vec![coupling];
         let residual = |joint: &str| Unexplained {

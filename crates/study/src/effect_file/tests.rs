@@ -1,16 +1,16 @@
 //! Effect files that are written and read again are the same, and errors name their line.
 
 use super::*;
-use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
+use effects::arm::{EXTERNAL_CONTACT, GRAVITY_MISALIGNMENT, INERTIAL_SCALE, LINK_INERTIAL_ERROR, PAYLOAD};
 use effects::drive::{
-    ActuationDelay, Backlash, JointElasticity, RotorInertia, TorqueRipple, TorqueSaturation, TransmissionCoupling,
+    ACTUATION_DELAY, BACKLASH, JOINT_ELASTICITY, ROTOR_INERTIA, TORQUE_RIPPLE, TORQUE_SATURATION, TRANSMISSION_COUPLING,
 };
 use effects::friction::{
-    CoulombFriction, FrictionAsymmetry, LoadDependentFriction, QuadraticDrag, StribeckFriction, ThermalDrift,
-    ViscousFriction,
+    COULOMB_FRICTION, FRICTION_ASYMMETRY, LOAD_DEPENDENT_FRICTION, QUADRATIC_DRAG, STRIBECK_FRICTION, THERMAL_DRIFT,
+    VISCOUS_FRICTION,
 };
-use effects::joint::Spring;
-use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
+use effects::joint::SPRING;
+use effects::sensor::{ENCODER_OFFSET, TORQUE_OFFSET, TORQUE_SCALE};
 
 fn arm() -> Arm {
     Arm::from_urdf_text(include_str!("../../../../assets/puma560.urdf"), "puma560.urdf").expect("it is an arm")
@@ -20,48 +20,48 @@ fn arm() -> Arm {
 fn all(joint: &str, other: &str) -> Vec<Effect> {
     let joint = || joint.to_owned();
     vec![
-        Effect::of(&ViscousFriction).on(joint()).with("coefficient", 0.1),
-        Effect::of(&CoulombFriction).on(joint()).with("level", 2.0),
-        Effect::of(&FrictionAsymmetry).on(joint()).with("positive", 1.0 / 3.0).with("negative", 0.25),
-        Effect::of(&StribeckFriction)
+        Effect::of(&VISCOUS_FRICTION).on(joint()).with("coefficient", 0.1),
+        Effect::of(&COULOMB_FRICTION).on(joint()).with("level", 2.0),
+        Effect::of(&FRICTION_ASYMMETRY).on(joint()).with("positive", 1.0 / 3.0).with("negative", 0.25),
+        Effect::of(&STRIBECK_FRICTION)
             .on(joint())
             .with("coulomb", 1.0)
             .with("breakaway", 1.5)
             .with("velocity", 0.02)
             .with("exponent", 1.0),
-        Effect::of(&LoadDependentFriction).on(joint()).with("coulomb", 1e-9).with("gain", 0.1),
-        Effect::of(&ThermalDrift).on(joint()).with("coulomb", 1.0).with("amplitude", 0.4).with("time_constant", 600.0),
-        Effect::of(&QuadraticDrag).on(joint()).with("coefficient", 0.3).with("exponent", 2.0),
-        Effect::of(&RotorInertia).on(joint()).with("inertia", 0.2),
-        Effect::of(&TorqueScale).on(joint()).with("factor", 1.1),
-        Effect::of(&TorqueOffset).on(joint()).with("offset", -0.1),
-        Effect::of(&TorqueRipple).on(joint()).with("amplitude", 0.2).with("periods", 12.0).with("phase", 0.3),
-        Effect::of(&TorqueSaturation).on(joint()).with("limit", 20.0),
-        Effect::of(&ActuationDelay).on(joint()).with("delay", 0.004),
-        Effect::of(&JointElasticity).on(joint()).with("stiffness", 1e4).with("damping", 3.0),
-        Effect::of(&Backlash).on(joint()).with("halfgap", 0.001),
-        Effect::of(&TransmissionCoupling)
+        Effect::of(&LOAD_DEPENDENT_FRICTION).on(joint()).with("coulomb", 1e-9).with("gain", 0.1),
+        Effect::of(&THERMAL_DRIFT).on(joint()).with("coulomb", 1.0).with("amplitude", 0.4).with("time_constant", 600.0),
+        Effect::of(&QUADRATIC_DRAG).on(joint()).with("coefficient", 0.3).with("exponent", 2.0),
+        Effect::of(&ROTOR_INERTIA).on(joint()).with("inertia", 0.2),
+        Effect::of(&TORQUE_SCALE).on(joint()).with("factor", 1.1),
+        Effect::of(&TORQUE_OFFSET).on(joint()).with("offset", -0.1),
+        Effect::of(&TORQUE_RIPPLE).on(joint()).with("amplitude", 0.2).with("periods", 12.0).with("phase", 0.3),
+        Effect::of(&TORQUE_SATURATION).on(joint()).with("limit", 20.0),
+        Effect::of(&ACTUATION_DELAY).on(joint()).with("delay", 0.004),
+        Effect::of(&JOINT_ELASTICITY).on(joint()).with("stiffness", 1e4).with("damping", 3.0),
+        Effect::of(&BACKLASH).on(joint()).with("halfgap", 0.001),
+        Effect::of(&TRANSMISSION_COUPLING)
             .on(joint())
             .with("sense", 1.0)
             .with_other(other)
             .with("viscous", 0.6)
             .with("coulomb", 1.9)
             .with("inertia", 0.01),
-        Effect::of(&Payload)
+        Effect::of(&PAYLOAD)
             .with("mass", 1.5)
             .with("com", [0.0, 0.01, 0.1])
             .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.02]),
-        Effect::of(&LinkInertialError).on(joint()).with("relative", -0.1),
-        Effect::of(&InertialScale).with("factor", 1.05),
-        Effect::of(&GravityMisalignment).with("angle", 0.05).with("axis", [0.0, 1.0, 0.0]),
-        Effect::of(&EncoderOffset).on(joint()).with("offset", 0.01),
-        Effect::of(&Spring).on(joint()).with("stiffness", 10.0).with("rest", 0.1),
-        Effect::of(&Spring)
+        Effect::of(&LINK_INERTIAL_ERROR).on(joint()).with("relative", -0.1),
+        Effect::of(&INERTIAL_SCALE).with("factor", 1.05),
+        Effect::of(&GRAVITY_MISALIGNMENT).with("angle", 0.05).with("axis", [0.0, 1.0, 0.0]),
+        Effect::of(&ENCODER_OFFSET).on(joint()).with("offset", 0.01),
+        Effect::of(&SPRING).on(joint()).with("stiffness", 10.0).with("rest", 0.1),
+        Effect::of(&SPRING)
             .on(joint())
             .with("stiffness", 0.0)
             .with("rest", 0.0)
             .with("curve", vec![[-1.0, 2.0], [0.5, 1.0]]),
-        Effect::of(&ExternalContact).with("start", 12.0).with("duration", 0.5).with("force", [0.0, 10.0, -5.0]),
+        Effect::of(&EXTERNAL_CONTACT).with("start", 12.0).with("duration", 0.5).with("force", [0.0, 10.0, -5.0]),
     ]
 }
 

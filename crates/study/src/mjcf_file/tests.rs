@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::process::Command;
 
-use effects::arm::{InertialParameters, InertialScale};
-use effects::drive::RotorInertia;
-use effects::friction::{CoulombFriction, FrictionAsymmetry, ViscousFriction};
-use effects::sensor::TorqueOffset;
+use effects::arm::{GRAVITY_MISALIGNMENT, INERTIAL_SCALE, link_effect};
+use effects::drive::ROTOR_INERTIA;
+use effects::friction::{COULOMB_FRICTION, FRICTION_ASYMMETRY, VISCOUS_FRICTION};
+use effects::sensor::{ENCODER_OFFSET, TORQUE_OFFSET};
 use torque::{Prediction, TorqueModel, Workspace};
 
 use arm::Matrix3;
@@ -30,18 +30,18 @@ fn held(arm: &Arm) -> Vec<Effect> {
         tensor: Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.04, 0.002, 0.0, 0.002, 0.02),
     };
     vec![
-        Effect::of(&InertialScale).with("factor", 1.1),
-        InertialParameters::effect(name(2), &body),
-        Effect::of(&ViscousFriction).on(name(0)).with("coefficient", 3.5),
-        Effect::of(&ViscousFriction).on(name(1)).with("coefficient", 0.25),
-        Effect::of(&CoulombFriction).on(name(1)).with("level", 1.25),
-        Effect::of(&CoulombFriction).on(name(0)).with("level", 0.5),
-        Effect::of(&RotorInertia).on(name(1)).with("inertia", 0.75),
-        Effect::of(&Spring).on(name(0)).with("stiffness", 20.0).with("rest", 0.3),
-        Effect::of(&Spring).on(name(0)).with("stiffness", 5.0).with("rest", -0.7),
-        Effect::of(&EncoderOffset).on(name(1)).with("offset", 0.05),
-        Effect::of(&GravityMisalignment).with("angle", 0.1).with("axis", [0.6, 0.8, 0.0]),
-        Effect::of(&Payload)
+        Effect::of(&INERTIAL_SCALE).with("factor", 1.1),
+        link_effect(name(2), &body),
+        Effect::of(&VISCOUS_FRICTION).on(name(0)).with("coefficient", 3.5),
+        Effect::of(&VISCOUS_FRICTION).on(name(1)).with("coefficient", 0.25),
+        Effect::of(&COULOMB_FRICTION).on(name(1)).with("level", 1.25),
+        Effect::of(&COULOMB_FRICTION).on(name(0)).with("level", 0.5),
+        Effect::of(&ROTOR_INERTIA).on(name(1)).with("inertia", 0.75),
+        Effect::of(&SPRING).on(name(0)).with("stiffness", 20.0).with("rest", 0.3),
+        Effect::of(&SPRING).on(name(0)).with("stiffness", 5.0).with("rest", -0.7),
+        Effect::of(&ENCODER_OFFSET).on(name(1)).with("offset", 0.05),
+        Effect::of(&GRAVITY_MISALIGNMENT).with("angle", 0.1).with("axis", [0.6, 0.8, 0.0]),
+        Effect::of(&PAYLOAD)
             .with("mass", 2.0)
             .with("com", [0.01, 0.02, 0.1])
             .with("inertia", [0.01, 0.001, 0.012, 0.0, 0.0, 0.008]),
@@ -60,11 +60,11 @@ fn what_mjcf_cannot_hold_is_listed() {
     {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
-    effects.push(Effect::of(&TorqueOffset).on(&joint).with("offset", 0.5));
+    effects.push(Effect::of(&TORQUE_OFFSET).on(&joint).with("offset", 0.5));
     effects.push(
-        Effect::of(&FrictionAsymmetry).on(arm.joints()[3].name.clone()).with("positive", 3.0).with("negative", 1.0),
+        Effect::of(&FRICTION_ASYMMETRY).on(arm.joints()[3].name.clone()).with("positive", 3.0).with("negative", 1.0),
     );
-    effects.push(Effect::of(&Payload).with("mass", 1.0).with("com", [0.0; 3]).since(Some(2.0)));
+    effects.push(Effect::of(&PAYLOAD).with("mass", 1.0).with("com", [0.0; 3]).since(Some(2.0)));
     let Export { text, omitted } = mjcf(&arm, &effects).expect("it is written");
     for (line, start) in
         omitted.iter().zip(["torque_offset of ", "friction_asymmetry of axis4 (the diff", "payload: mass 1.000 kg"])
@@ -74,7 +74,7 @@ fn what_mjcf_cannot_hold_is_listed() {
     assert_eq!(omitted.len(), 4);
     assert!(text.contains("frictionloss=\"2\""), "{text}");
     // A tool that is not mounted is a body of negative mass, in the last link.
-    let less = [Effect::of(&Payload).with("mass", -0.1).with("com", [0.0; 3])];
+    let less = [Effect::of(&PAYLOAD).with("mass", -0.1).with("com", [0.0; 3])];
     let text = mjcf(&arm, &less).expect("it is written").text;
     assert!(!text.contains("\"payload\""), "{text}");
 }

@@ -1,8 +1,9 @@
 //! A written URDF, read again, equals the corrected model.
 
 use super::*;
-use effects::friction::{CoulombFriction, FrictionAsymmetry, StribeckFriction, ViscousFriction};
-use effects::sensor::TorqueOffset;
+use effects::arm::link_effect;
+use effects::friction::{COULOMB_FRICTION, FRICTION_ASYMMETRY, STRIBECK_FRICTION, VISCOUS_FRICTION};
+use effects::sensor::TORQUE_OFFSET;
 use torque::{Prediction, TorqueModel, Workspace};
 
 /// Welded links, one of them without inertial, comments, odd spacing, a transmission with a joint of the same name.
@@ -30,15 +31,15 @@ const TWO: &str = r#"<?xml version="1.0"?>
 
 fn effects() -> Vec<Effect> {
     vec![
-        Effect::of(&ViscousFriction).on("a").with("coefficient", 1.25),
-        Effect::of(&CoulombFriction).on("b").with("level", 0.75),
-        Effect::of(&Payload)
+        Effect::of(&VISCOUS_FRICTION).on("a").with("coefficient", 1.25),
+        Effect::of(&COULOMB_FRICTION).on("b").with("level", 0.75),
+        Effect::of(&PAYLOAD)
             .with("mass", 1.5)
             .with("com", [0.1, 0.02, 0.3])
             .with("inertia", [0.03, 0.001, 0.025, 0.0, 0.002, 0.02]),
-        Effect::of(&LinkInertialError).on("b").with("relative", 0.2),
-        Effect::of(&InertialScale).with("factor", 1.1),
-        Effect::of(&TorqueOffset).on("b").with("offset", 0.3),
+        Effect::of(&LINK_INERTIAL_ERROR).on("b").with("relative", 0.2),
+        Effect::of(&INERTIAL_SCALE).with("factor", 1.1),
+        Effect::of(&TORQUE_OFFSET).on("b").with("offset", 0.3),
     ]
 }
 
@@ -106,12 +107,12 @@ fn the_puma_is_read_as_written() {
     let arm = read(urdf);
     let joint = |j: usize| arm.joints()[j].name.clone();
     let effects = [
-        Effect::of(&Payload)
+        Effect::of(&PAYLOAD)
             .with("mass", 2.0)
             .with("com", [0.0, 0.0, 0.1])
             .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.01]),
-        Effect::of(&LinkInertialError).on(joint(1)).with("relative", -0.15),
-        Effect::of(&ViscousFriction).on(joint(2)).with("coefficient", 3.5),
+        Effect::of(&LINK_INERTIAL_ERROR).on(joint(1)).with("relative", -0.15),
+        Effect::of(&VISCOUS_FRICTION).on(joint(2)).with("coefficient", 3.5),
     ];
     let written = read(&corrected_urdf(urdf, &arm, &effects).expect("it is written").text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &effects).expect("they are physical"));
@@ -121,7 +122,7 @@ fn the_puma_is_read_as_written() {
 #[test]
 fn effects_of_another_robot_are_refused() {
     let arm = read(TWO);
-    let unknown = [Effect::of(&CoulombFriction).on("z").with("level", 1.0)];
+    let unknown = [Effect::of(&COULOMB_FRICTION).on("z").with("level", 1.0)];
     assert!(corrected_urdf(TWO, &arm, &unknown).is_err());
     let other = TWO.replace("name=\"upper\"", "name=\"other\"");
     let error = corrected_urdf(&other, &arm, &effects()).expect_err("it is another robot's");
@@ -133,8 +134,8 @@ fn effects_of_another_robot_are_refused() {
 fn what_a_urdf_holds_in_part_is_written_and_listed() {
     let arm = read(TWO);
     let found = [
-        Effect::of(&FrictionAsymmetry).on("a").with("positive", 3.0).with("negative", 2.0),
-        Effect::of(&StribeckFriction).on("b").with("coulomb", 1.0).with("breakaway", 1.5).with("velocity", 0.1),
+        Effect::of(&FRICTION_ASYMMETRY).on("a").with("positive", 3.0).with("negative", 2.0),
+        Effect::of(&STRIBECK_FRICTION).on("b").with("coulomb", 1.0).with("breakaway", 1.5).with("velocity", 0.1),
     ];
     let Export { text, omitted } = corrected_urdf(TWO, &arm, &found).expect("it is written");
     let written = read(&text);
@@ -155,8 +156,7 @@ fn inertial_parameters_are_written() {
         com: [0.01, -0.02, 0.3].into(),
         tensor: arm::Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.04, 0.002, 0.0, 0.002, 0.02),
     };
-    let found =
-        [InertialParameters::effect("b", &body), Effect::of(&Payload).with("mass", 0.5).with("com", [0.0, 0.1, 0.2])];
+    let found = [link_effect("b", &body), Effect::of(&PAYLOAD).with("mass", 0.5).with("com", [0.0, 0.1, 0.2])];
     let written = read(&corrected_urdf(TWO, &arm, &found).expect("it is written").text);
     assert_same_dynamics(&written, &Corrected::new(&arm, &found).expect("they are physical"));
     assert!((written.joints()[1].inertia.mass - 2.25).abs() < 1e-12);
@@ -166,7 +166,7 @@ fn inertial_parameters_are_written() {
 #[test]
 fn drive_inertias_are_written_for_drake() {
     let arm = read(TWO);
-    let drive = |joint: &str| Effect::of(&RotorInertia).on(joint).with("inertia", 0.125);
+    let drive = |joint: &str| Effect::of(&ROTOR_INERTIA).on(joint).with("inertia", 0.125);
     let Export { text, omitted } = corrected_urdf(TWO, &arm, &[drive("b")]).expect("it is written");
     assert!(omitted.is_empty(), "{omitted:?}");
     for part in [
@@ -185,7 +185,7 @@ fn drive_inertias_are_written_for_drake() {
 /// A payload whose moments the recordings do not determine may leave a tool that no body has. What is written can be read again.
 #[test]
 fn a_payload_that_leaves_no_body_is_written_as_the_nearest_one() {
-    let payload = Effect::of(&Payload)
+    let payload = Effect::of(&PAYLOAD)
         .with("mass", -0.2)
         .with("com", [0.15, 0.0, 0.0])
         .with("inertia", [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);

@@ -25,7 +25,7 @@ fn effects_help() -> String {
     const NAME: usize = 24;
     const WIDTH: usize = 100;
     let mut help = String::from("Effects:");
-    for spec in effects::CATALOGUE.iter().map(|kind| kind.spec()) {
+    for spec in effects::CATALOGUE {
         let mut line = format!("  {:<NAME$}", spec.name);
         for word in spec.meaning.split_whitespace() {
             if line.chars().count() + 1 + word.chars().count() > WIDTH {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use effects::Effect;
-use effects::arm::InertialScale;
+use effects::arm::INERTIAL_SCALE;
 use faults::{Concealment, Injected, Truth};
 use recording::Recording;
 use scoring::{Answer, Named, Number};
@@ -138,7 +138,7 @@ pub fn conceal() -> anyhow::Result<Concealment> {
 /// The URDF of the paper's controller: [`Scenario::nominal_arm`] as an edit of the robot's own file.
 fn heavy_urdf(scenario: &Scenario) -> anyhow::Result<String> {
     let urdf = study::robot::named_robot(scenario.arm.name())?.text;
-    let heavier = Effect::of(&InertialScale).with("factor", scenario.inertia_scale);
+    let heavier = Effect::of(&INERTIAL_SCALE).with("factor", scenario.inertia_scale);
     changed_urdf(&urdf, &scenario.arm, &[heavier])
 }
 

@@ -1,14 +1,14 @@
 //! The torques of effects against values computed by hand, and parameters that are refused.
 
 use arm::Arm;
-use effects::arm::{ExternalContact, GravityMisalignment, InertialScale, LinkInertialError, Payload};
-use effects::drive::{RotorInertia, TorqueRipple, TorqueSaturation, TransmissionCoupling};
+use effects::arm::{EXTERNAL_CONTACT, GRAVITY_MISALIGNMENT, INERTIAL_SCALE, LINK_INERTIAL_ERROR, PAYLOAD};
+use effects::drive::{ROTOR_INERTIA, TORQUE_RIPPLE, TORQUE_SATURATION, TRANSMISSION_COUPLING};
 use effects::friction::{
-    CoulombFriction, FrictionAsymmetry, LoadDependentFriction, QuadraticDrag, StribeckFriction, ThermalDrift,
-    ViscousFriction,
+    COULOMB_FRICTION, FRICTION_ASYMMETRY, LOAD_DEPENDENT_FRICTION, QUADRATIC_DRAG, STRIBECK_FRICTION, THERMAL_DRIFT,
+    VISCOUS_FRICTION,
 };
-use effects::joint::Spring;
-use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
+use effects::joint::SPRING;
+use effects::sensor::{ENCODER_OFFSET, TORQUE_OFFSET, TORQUE_SCALE};
 
 use super::*;
 
@@ -51,12 +51,12 @@ fn added(effect: Effect, q: f64, qd: f64) -> f64 {
 
 fn offset(offset: f64, onset: Option<f64>) -> Effect {
     let joint = a();
-    Effect::of(&TorqueOffset).on(joint).with("offset", offset).since(onset)
+    Effect::of(&TORQUE_OFFSET).on(joint).with("offset", offset).since(onset)
 }
 
 fn scale(factor: f64, onset: Option<f64>) -> Effect {
     let joint = a();
-    Effect::of(&TorqueScale).on(joint).with("factor", factor).since(onset)
+    Effect::of(&TORQUE_SCALE).on(joint).with("factor", factor).since(onset)
 }
 
 #[track_caller]
@@ -66,17 +66,17 @@ fn near(found: f64, expected: f64) {
 
 #[test]
 fn friction_follows_the_sign_of_the_velocity() {
-    let coulomb = || Effect::of(&CoulombFriction).on(a()).with("level", 2.0);
+    let coulomb = || Effect::of(&COULOMB_FRICTION).on(a()).with("level", 2.0);
     for (qd, expected) in [(0.3, 2.0), (-0.3, -2.0), (0.0, 0.0), (-0.0, 0.0)] {
         near(added(coulomb(), 0.0, qd), expected);
     }
-    near(added(Effect::of(&ViscousFriction).on(a()).with("coefficient", 4.0), 0.0, -0.5), -2.0);
-    near(added(Effect::of(&QuadraticDrag).on(a()).with("coefficient", 4.0).with("exponent", 2.0), 0.0, -0.5), -1.0);
-    let uneven = || Effect::of(&FrictionAsymmetry).on(a()).with("positive", 3.0).with("negative", 1.0);
+    near(added(Effect::of(&VISCOUS_FRICTION).on(a()).with("coefficient", 4.0), 0.0, -0.5), -2.0);
+    near(added(Effect::of(&QUADRATIC_DRAG).on(a()).with("coefficient", 4.0).with("exponent", 2.0), 0.0, -0.5), -1.0);
+    let uneven = || Effect::of(&FRICTION_ASYMMETRY).on(a()).with("positive", 3.0).with("negative", 1.0);
     for (qd, expected) in [(0.3, 3.0), (-0.3, -1.0), (0.0, 0.0)] {
         near(added(uneven(), 0.0, qd), expected);
     }
-    let stribeck = Effect::of(&StribeckFriction)
+    let stribeck = Effect::of(&STRIBECK_FRICTION)
         .on(a())
         .with("coulomb", 1.0)
         .with("breakaway", 3.0)
@@ -87,11 +87,11 @@ fn friction_follows_the_sign_of_the_velocity() {
 
 #[test]
 fn position_makes_springs_and_ripple() {
-    near(added(Effect::of(&TorqueOffset).on(a()).with("offset", -0.7), 1.0, 1.0), -0.7);
-    let ripple = Effect::of(&TorqueRipple).on(a()).with("amplitude", 0.5).with("periods", 6.0).with("phase", 0.1);
+    near(added(Effect::of(&TORQUE_OFFSET).on(a()).with("offset", -0.7), 1.0, 1.0), -0.7);
+    let ripple = Effect::of(&TORQUE_RIPPLE).on(a()).with("amplitude", 0.5).with("periods", 6.0).with("phase", 0.1);
     near(added(ripple, 0.3, 0.0), 0.5 * 1.9_f64.sin());
     let spring = |curve: Vec<[f64; 2]>| {
-        Effect::of(&Spring).on(a()).with("stiffness", 10.0).with("rest", 0.2).with("curve", curve)
+        Effect::of(&SPRING).on(a()).with("stiffness", 10.0).with("rest", 0.2).with("curve", curve)
     };
     near(added(spring(vec![]), 0.5, 0.0), 3.0);
     let curve = vec![[-1.0, 4.0], [0.0, 2.0], [1.0, 3.0]];
@@ -103,7 +103,7 @@ fn position_makes_springs_and_ripple() {
 #[test]
 fn drift_is_warm_unless_the_time_is_given() {
     let drift =
-        Effect::of(&ThermalDrift).on(a()).with("coulomb", 2.0).with("amplitude", 0.5).with("time_constant", 10.0);
+        Effect::of(&THERMAL_DRIFT).on(a()).with("coulomb", 2.0).with("amplitude", 0.5).with("time_constant", 10.0);
     let model = Corrected::new(&arm(FLAT), &[drift]).expect("it is physical");
     let at = |time| predict(&model, time, &[0.0, 0.0], &[-1.0, 0.0], &[0.0, 0.0]).effects[0];
     near(at(None), -2.0);
@@ -114,8 +114,8 @@ fn drift_is_warm_unless_the_time_is_given() {
 #[test]
 fn load_is_the_rigid_torque_of_the_corrected_arm() {
     let effects = [
-        Effect::of(&Payload).with("mass", 1.0).with("com", [0.5, 0.0, 0.0]).with("inertia", [0.0; 6]),
-        Effect::of(&LoadDependentFriction).on(a()).with("coulomb", 0.5).with("gain", 0.1),
+        Effect::of(&PAYLOAD).with("mass", 1.0).with("com", [0.5, 0.0, 0.0]).with("inertia", [0.0; 6]),
+        Effect::of(&LOAD_DEPENDENT_FRICTION).on(a()).with("coulomb", 0.5).with("gain", 0.1),
     ];
     let model = Corrected::new(&arm(PENDULUM), &effects).expect("it is physical");
     // Gravity on a mass along x turns the arm downwards about y: the drive holds it with a negative torque.
@@ -135,18 +135,18 @@ fn inertial_effects_are_in_the_rigid_part() {
     };
     let weight = -9.81 * 2.0 * 0.5;
     near(rigid(&[], 0.0, 0.0), weight);
-    near(rigid(&[Effect::of(&RotorInertia).on(a()).with("inertia", 0.4)], 0.0, 2.0), weight + 2.0 * (0.1 + 0.5 + 0.4));
-    near(rigid(&[Effect::of(&LinkInertialError).on(a()).with("relative", 0.1)], 0.0, 0.0), 1.1 * weight);
-    near(rigid(&[Effect::of(&InertialScale).with("factor", 1.2)], 0.0, 0.0), 1.2 * weight);
-    near(rigid(&[Effect::of(&EncoderOffset).on(a()).with("offset", -0.3)], 0.2, 0.0), weight * 0.5_f64.cos());
+    near(rigid(&[Effect::of(&ROTOR_INERTIA).on(a()).with("inertia", 0.4)], 0.0, 2.0), weight + 2.0 * (0.1 + 0.5 + 0.4));
+    near(rigid(&[Effect::of(&LINK_INERTIAL_ERROR).on(a()).with("relative", 0.1)], 0.0, 0.0), 1.1 * weight);
+    near(rigid(&[Effect::of(&INERTIAL_SCALE).with("factor", 1.2)], 0.0, 0.0), 1.2 * weight);
+    near(rigid(&[Effect::of(&ENCODER_OFFSET).on(a()).with("offset", -0.3)], 0.2, 0.0), weight * 0.5_f64.cos());
     // Rotating the base about the joint's own axis is equivalent to rotating the joint.
-    let tilt = Effect::of(&GravityMisalignment).with("angle", 0.3).with("axis", [0.0, 1.0, 0.0]);
+    let tilt = Effect::of(&GRAVITY_MISALIGNMENT).with("angle", 0.3).with("axis", [0.0, 1.0, 0.0]);
     near(rigid(&[tilt], 0.2, 0.0), weight * 0.5_f64.cos());
 }
 
 #[test]
 fn a_coupling_follows_the_other_joint() {
-    let coupling = Effect::of(&TransmissionCoupling)
+    let coupling = Effect::of(&TRANSMISSION_COUPLING)
         .on(a())
         .with("sense", 1.0)
         .with_other("b")
@@ -175,7 +175,7 @@ fn an_onset_is_waited_for() {
 
 #[test]
 fn scale_and_limit_come_last() {
-    let limit = Effect::of(&TorqueSaturation).on(a()).with("limit", 2.5);
+    let limit = Effect::of(&TORQUE_SATURATION).on(a()).with("limit", 2.5);
     let effects = [offset(2.0, None), scale(1.5, None), limit];
     let of = |effects: &[Effect]| {
         let model = Corrected::new(&arm(PENDULUM), effects).expect("they are physical");
@@ -189,7 +189,7 @@ fn scale_and_limit_come_last() {
 /// At q = 0 the tool is 1.5 m from axis a and 0.5 m from axis b, along x.
 #[test]
 fn a_contact_pushes_while_it_lasts() {
-    let contact = Effect::of(&ExternalContact).with("start", 1.0).with("duration", 0.5).with("force", [5.0, 2.0, 7.0]);
+    let contact = Effect::of(&EXTERNAL_CONTACT).with("start", 1.0).with("duration", 0.5).with("force", [5.0, 2.0, 7.0]);
     let model = Corrected::new(&arm(FLAT), &[contact]).expect("it is physical");
     let at = |time| predict(&model, time, &[0.0; 2], &[0.0; 2], &[0.0; 2]).effects;
     assert_eq!(at(None), [0.0, 0.0]);
@@ -201,8 +201,8 @@ fn a_contact_pushes_while_it_lasts() {
 /// The gear does not transmit the torque that accelerates the rotor, which is the motor's own.
 #[test]
 fn load_dependent_friction_does_not_grow_with_the_rotors_torque() {
-    let friction = Effect::of(&LoadDependentFriction).on(a()).with("coulomb", 0.5).with("gain", 0.1);
-    let rotor = Effect::of(&RotorInertia).on(a()).with("inertia", 7.0);
+    let friction = Effect::of(&LOAD_DEPENDENT_FRICTION).on(a()).with("coulomb", 0.5).with("gain", 0.1);
+    let rotor = Effect::of(&ROTOR_INERTIA).on(a()).with("inertia", 7.0);
     let model = Corrected::new(&arm(PENDULUM), &[friction, rotor]).expect("they are physical");
     let prediction = predict(&model, None, &[0.0], &[1.0], &[3.0]);
     // Weight and inertia of the link: m g l acts against the positive direction about y.
@@ -215,12 +215,12 @@ fn load_dependent_friction_does_not_grow_with_the_rotors_torque() {
 #[test]
 fn loads_and_torques_agree() {
     let effects = [
-        Effect::of(&FrictionAsymmetry).on(a()).with("positive", 3.0).with("negative", 1.0),
-        Effect::of(&LoadDependentFriction).on("b").with("coulomb", 0.5).with("gain", 0.1),
-        Effect::of(&RotorInertia).on("b").with("inertia", 0.4),
-        Effect::of(&ViscousFriction).on(a()).with("coefficient", 0.7),
-        Effect::of(&Spring).on("b").with("stiffness", 3.0).with("rest", 0.1),
-        Effect::of(&ExternalContact).with("start", 0.0).with("duration", 1.0).with("force", [1.0, 2.0, 3.0]),
+        Effect::of(&FRICTION_ASYMMETRY).on(a()).with("positive", 3.0).with("negative", 1.0),
+        Effect::of(&LOAD_DEPENDENT_FRICTION).on("b").with("coulomb", 0.5).with("gain", 0.1),
+        Effect::of(&ROTOR_INERTIA).on("b").with("inertia", 0.4),
+        Effect::of(&VISCOUS_FRICTION).on(a()).with("coefficient", 0.7),
+        Effect::of(&SPRING).on("b").with("stiffness", 3.0).with("rest", 0.1),
+        Effect::of(&EXTERNAL_CONTACT).with("start", 0.0).with("duration", 1.0).with("force", [1.0, 2.0, 3.0]),
     ];
     let model = Corrected::new(&arm(FLAT), &effects).expect("they are physical");
     let (q, qd, qdd) = ([0.3, -0.8], [-0.5, 0.9], [2.0, -1.0]);
@@ -237,27 +237,27 @@ fn loads_and_torques_agree() {
 fn refusals_name_effect_joint_and_value() {
     let refused = |effect| Corrected::new(&arm(FLAT), &[effect]).expect_err("it is refused").to_string();
     assert_eq!(
-        refused(Effect::of(&CoulombFriction).on("c").with("level", 1.0)),
+        refused(Effect::of(&COULOMB_FRICTION).on("c").with("level", 1.0)),
         "coulomb_friction: the robot has no joint \"c\"; it has a, b"
     );
     assert_eq!(
-        refused(Effect::of(&CoulombFriction).on(a()).with("level", -1.0)),
+        refused(Effect::of(&COULOMB_FRICTION).on(a()).with("level", -1.0)),
         "coulomb_friction of a: level is -1; it must be finite and not negative"
     );
     assert_eq!(
-        refused(Effect::of(&TorqueScale).on(a()).with("factor", f64::NAN)),
+        refused(Effect::of(&TORQUE_SCALE).on(a()).with("factor", f64::NAN)),
         "torque_scale of a: factor is NaN; it must be finite and positive"
     );
     assert_eq!(
         refused(
-            Effect::of(&Payload)
+            Effect::of(&PAYLOAD)
                 .with("mass", 1.0)
                 .with("com", [0.0; 3])
                 .with("inertia", [-1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
         ),
         "payload of the whole arm: inertia's smallest principal moment is -1; it must be finite and not negative"
     );
-    let coupling = Effect::of(&TransmissionCoupling)
+    let coupling = Effect::of(&TRANSMISSION_COUPLING)
         .on(a())
         .with("sense", 1.0)
         .with_other("x")
@@ -265,12 +265,12 @@ fn refusals_name_effect_joint_and_value() {
         .with("coulomb", 0.0)
         .with("inertia", 0.0);
     assert!(refused(coupling).contains("no joint \"x\""));
-    let bent = Effect::of(&Spring)
+    let bent = Effect::of(&SPRING)
         .on(a())
         .with("stiffness", 0.0)
         .with("rest", 0.0)
         .with("curve", vec![[1.0, 0.0], [0.5, 0.0]]);
     assert!(refused(bent).contains("larger than the one before"));
-    let nowhere = Effect::of(&GravityMisalignment).with("angle", 0.1).with("axis", [0.0; 3]);
+    let nowhere = Effect::of(&GRAVITY_MISALIGNMENT).with("angle", 0.1).with("axis", [0.0; 3]);
     assert!(refused(nowhere).contains("axis' length is 0"));
 }

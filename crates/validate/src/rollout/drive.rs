@@ -131,7 +131,7 @@ mod tests {
     use super::*;
     use arm::Arm;
     use effects::Effect;
-    use effects::drive::{ActuationDelay, Backlash, JointElasticity};
+    use effects::drive::{ACTUATION_DELAY, BACKLASH, JOINT_ELASTICITY};
 
     fn machine(effects: &[Effect]) -> Machine {
         let urdf = r#"<robot name="one"><link name="base"/>
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn rotor_and_link_oscillate_as_two_bodies() {
         let (inertia, mass, stiffness, step) = (0.5, 1.0, 2000.0, 1e-3);
-        let effects = [Effect::of(&JointElasticity).on("a").with("stiffness", stiffness).with("damping", 0.0)];
+        let effects = [Effect::of(&JOINT_ELASTICITY).on("a").with("stiffness", stiffness).with("damping", 0.0)];
         let mut drives = Drives::new(&machine(&effects), &["a".into()], &[inertia], &[mass], step);
         assert!(drives.is_separate(0) && drives.remarks.is_empty());
         let connection = drives.connections[0].as_mut().expect("there is a spring");
@@ -165,9 +165,9 @@ mod tests {
     #[test]
     fn a_rotor_without_inertia_is_deflected() {
         let effects = [
-            Effect::of(&JointElasticity).on("a").with("stiffness", 100.0).with("damping", 1.0),
-            Effect::of(&Backlash).on("a").with("halfgap", 0.01),
-            Effect::of(&ActuationDelay).on("a").with("delay", 0.004),
+            Effect::of(&JOINT_ELASTICITY).on("a").with("stiffness", 100.0).with("damping", 1.0),
+            Effect::of(&BACKLASH).on("a").with("halfgap", 0.01),
+            Effect::of(&ACTUATION_DELAY).on("a").with("delay", 0.004),
         ];
         let mut drives = Drives::new(&machine(&effects), &["a".into()], &[0.0], &[1.0], 1e-3);
         assert_eq!(drives.delays, [0.004]);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
-use effects::drive::RotorInertia;
+use effects::drive::ROTOR_INERTIA;
 use recording::Recording;
 
 fn blind() -> PathBuf {
@@ -28,7 +28,7 @@ fn injected(truth: &Path) -> Option<Vec<Effect>> {
         }
         if let Some(rotor) = item.remove("rotor") {
             effects.push(
-                Effect::of(&RotorInertia)
+                Effect::of(&ROTOR_INERTIA)
                     .on(item["joint"].as_str().expect("it has a joint"))
                     .with("inertia", rotor.as_f64().expect("it is a number")),
             );

@@ -1,8 +1,8 @@
 //! Rollouts of recordings that the plant itself made.
 
 use super::*;
-use effects::friction::{CoulombFriction, ViscousFriction};
-use effects::sensor::{EncoderOffset, TorqueOffset, TorqueScale};
+use effects::friction::{COULOMB_FRICTION, VISCOUS_FRICTION};
+use effects::sensor::{ENCODER_OFFSET, TORQUE_OFFSET, TORQUE_SCALE};
 use plant::{Plant, PlantOptions};
 use recording::Recording;
 use torque::Corrected;
@@ -78,10 +78,10 @@ fn assert_better(result: &Rollout, joints: std::ops::Range<usize>, factor: f64) 
 #[test]
 fn named_friction_and_payload_are_simulated() {
     let nominal = puma();
-    let mut effects = every_joint(&nominal, |joint| Effect::of(&ViscousFriction).on(joint).with("coefficient", 0.8));
-    effects.extend(every_joint(&nominal, |joint| Effect::of(&CoulombFriction).on(joint).with("level", 0.6)));
+    let mut effects = every_joint(&nominal, |joint| Effect::of(&VISCOUS_FRICTION).on(joint).with("coefficient", 0.8));
+    effects.extend(every_joint(&nominal, |joint| Effect::of(&COULOMB_FRICTION).on(joint).with("level", 0.6)));
     effects.push(
-        Effect::of(&Payload)
+        Effect::of(&PAYLOAD)
             .with("mass", 2.0)
             .with("com", [0.0, 0.0, 0.1])
             .with("inertia", [0.01, 0.0, 0.01, 0.0, 0.0, 0.01]),
@@ -105,9 +105,9 @@ fn effects_of_drives_and_encoders_are_simulated() {
     let arm = puma();
     let name = |j: usize| arm.joints()[j].name.clone();
     let effects = [
-        Effect::of(&TorqueScale).on(name(1)).with("factor", 1.15),
-        Effect::of(&EncoderOffset).on(name(2)).with("offset", -0.1),
-        Effect::of(&TorqueOffset).on(name(0)).with("offset", 3.0),
+        Effect::of(&TORQUE_SCALE).on(name(1)).with("factor", 1.15),
+        Effect::of(&ENCODER_OFFSET).on(name(2)).with("offset", -0.1),
+        Effect::of(&TORQUE_OFFSET).on(name(0)).with("offset", 3.0),
     ];
     let recording = record(&arm, 0.0, 0.0, 5.0, |j, tau, q| match j {
         0 => (tau + 3.0, q),

@@ -26,7 +26,7 @@ impl Problem<'_> {
         let ([first, second], [one, other]) =
             ([a, b].map(|c| &self.table.terms[c.columns[0]]), [a.hypothesis, b.hypothesis]);
         if is_one_effect {
-            one.other == other.other && one.kind.get().is_same(first, second)
+            one.other == other.other && (one.spec().is_same)(first, second)
         } else {
             one.spec().excludes.contains(&other.spec().name) || other.spec().excludes.contains(&one.spec().name)
         }

@@ -26,7 +26,7 @@ pub fn onsets(
     rows.sort_by(|&a, &b| times[b].total_cmp(&times[a]));
     let past = Past { table, weights, times, residual, rows };
     let dof = table.dof();
-    let mut kinds: Vec<(Kind, SetsIn)> = Kind::all().filter_map(|kind| Some((kind, kind.get().sets_in()?))).collect();
+    let mut kinds: Vec<(Kind, SetsIn)> = Kind::all().filter_map(|kind| Some((kind, kind.spec().sets_in?))).collect();
     kinds.sort_by_key(|(_, form)| form.turn);
     let (on_arm, on_joint): (Vec<_>, Vec<_>) = kinds.into_iter().partition(|(kind, _)| kind.spec().scope == Scope::Arm);
     let all: Vec<usize> = (0..dof).collect();

@@ -1,8 +1,8 @@
 //! Torque constants of all joints that changed together, in the place of changes of masses and friction that imitate them.
 
-use effects::EffectKind;
-use effects::arm::{InertialScale, LinkInertialError};
-use effects::sensor::TorqueScale;
+use effects::Spec;
+use effects::arm::{INERTIAL_SCALE, LINK_INERTIAL_ERROR};
+use effects::sensor::TORQUE_SCALE;
 
 use super::Study;
 use crate::regression::fit::Fit;
@@ -10,7 +10,7 @@ use crate::search::problem::Selection;
 use crate::thresholds::FACTOR_OF_MASSES;
 
 /// Factors on masses: torque constants of several joints resemble them.
-const OF_MASSES: [&dyn EffectKind; 2] = [&InertialScale, &LinkInertialError];
+const OF_MASSES: [&Spec; 2] = [&INERTIAL_SCALE, &LINK_INERTIAL_ERROR];
 
 impl Study {
     /// `selected` with a changed torque constant on each joint in the place of masses and friction that changed since the recordings
@@ -77,7 +77,7 @@ impl Study {
 
     /// Whether a candidate is a torque constant that changed.
     fn is_changed_constant(&self, candidate: usize) -> bool {
-        self.changes(candidate) && self.candidates[candidate].hypothesis.is(&TorqueScale)
+        self.changes(candidate) && self.candidates[candidate].hypothesis.is(&TORQUE_SCALE)
     }
 
     fn is_factor_of_masses(&self, candidate: usize) -> bool {

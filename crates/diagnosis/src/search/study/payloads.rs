@@ -1,6 +1,6 @@
 //! Decides between payloads and bodies of links, which explain the same torque.
 
-use effects::arm::{PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS, Payload};
+use effects::arm::{PAYLOAD, PAYLOAD_PARAMETER, PAYLOAD_WITHOUT_MOMENTS};
 
 use super::Study;
 use crate::regression::bodies::PER_LINK;
@@ -10,7 +10,7 @@ use crate::thresholds::{FELT, PAYLOAD_JOINTS, PER_LINK_APART};
 impl Study {
     /// Whether a candidate is a payload, with or without moments of inertia.
     pub fn is_payload(&self, candidate: usize) -> bool {
-        self.candidates[candidate].hypothesis.is(&Payload)
+        self.candidates[candidate].hypothesis.is(&PAYLOAD)
     }
 
     /// Whether a candidate is a payload with moments of inertia of its own.

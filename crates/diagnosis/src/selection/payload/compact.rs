@@ -1,7 +1,7 @@
 //! Payloads whose moments of inertia are those of the drives.
 
 use effects::arm::body;
-use effects::drive::RotorInertia;
+use effects::drive::ROTOR_INERTIA;
 
 use crate::regression::bodies::PER_LINK;
 use crate::search::problem::Selection;
@@ -20,7 +20,7 @@ pub fn with_drives(study: &Study, selected: Selection) -> Selection {
     };
     let products = study.training_products();
     let problem = study.problem(&products);
-    let is_drive = |&c: &usize| study.candidates[c].hypothesis.is(&RotorInertia) && study.always_acts(c);
+    let is_drive = |&c: &usize| study.candidates[c].hypothesis.is(&ROTOR_INERTIA) && study.always_acts(c);
     let drives: Vec<usize> = study.allowed().into_iter().filter(is_drive).collect();
     // Where no drive has an inertia so far, the moments may be those of a long body, but not of any.
     let values: [f64; PER_LINK] =

@@ -5,7 +5,7 @@
 //! that one body explains nearly as much as the background of all links, it is named, and also if there is clearly more evidence
 //! for the body beside another background.
 
-use effects::arm::{InertialParameters, LinkInertialError};
+use effects::arm::{INERTIAL_PARAMETERS, LINK_INERTIAL_ERROR};
 
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
@@ -49,7 +49,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
         let standing = standing(study, &problem, &next, body);
         // The background and a lighter last link were compared in `instead`.
         let replaced = lighter.map(|c| (study.candidates[c].hypothesis, study.candidates[c].joint));
-        let is_other = |rival: &Rival| !rival.0.is(&InertialParameters) && Some(*rival) != replaced;
+        let is_other = |rival: &Rival| !rival.0.is(&INERTIAL_PARAMETERS) && Some(*rival) != replaced;
         standing.margin < UNDECIDED_NATS && standing.rivals.iter().any(is_other)
     };
     if !is_missing || is_undecided() || !explains_a_part(study, &next) {
@@ -85,7 +85,7 @@ fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
     let last = study.data.arm.dof().checked_sub(1)?;
     let is_lighter = |&c: &usize| {
         let candidate = &study.candidates[c];
-        candidate.hypothesis.is(&LinkInertialError)
+        candidate.hypothesis.is(&LINK_INERTIAL_ERROR)
             && candidate.joint == Some(last)
             && study.always_acts(c)
             && selected.fit.coefficient(candidate.columns[0]) < -LEAST_OF_THE_LINK

@@ -10,7 +10,7 @@ use diagnosis::{
     Axis, Confusable, Dependence, Finding, JointFit, JointRollout, Located, NotObservable, Parameter, Place,
     RecordingNames, Region, Report, TimeWindow, Trace, Traces, Unexplained, Verdict,
 };
-use effects::{Effect, Kind, Regressor};
+use effects::{Effect, Regressor};
 
 use motion::{EFFECTS, Row, acts, arm, spread, trace};
 
@@ -55,7 +55,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
             .collect();
         let joint = row.1.map(name);
         let (main, value, ..) = row.2[0];
-        let mut as_effect = Effect::of(Kind::named(row.0).expect("a name of the catalogue").get());
+        let mut as_effect = Effect::of(effects::spec(row.0).expect("a name of the catalogue"));
         for &(key, value, ..) in row.2 {
             as_effect = as_effect.with(key, value);
         }

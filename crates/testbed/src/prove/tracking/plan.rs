@@ -2,7 +2,7 @@
 
 use arm::Arm;
 use effects::Effect;
-use effects::drive::{ActuationDelay, JointElasticity, TorqueSaturation};
+use effects::drive::{ACTUATION_DELAY, JOINT_ELASTICITY, TORQUE_SATURATION};
 use faults::{CaseMachine, LinkMotion};
 use torque::{Corrected, Learned, Prediction, RigidBody, TorqueModel, Workspace};
 
@@ -58,9 +58,9 @@ impl Plan {
         });
         for (j, joint) in arm.joints().iter().enumerate() {
             for effect in effects.iter().filter(|effect| effect.joint() == Some(&joint.name)) {
-                if effect.is(&ActuationDelay) {
+                if effect.is(&ACTUATION_DELAY) {
                     plan.delays[j] += effect.number("delay");
-                } else if effect.is(&JointElasticity) {
+                } else if effect.is(&JOINT_ELASTICITY) {
                     let stiffness = effect.number("stiffness");
                     plan.stretch(arm, effects, &model, course, (j, stiffness))?;
                 }
@@ -145,7 +145,7 @@ impl Plan {
 /// The named effects as a model of the torque that a drive must give. Torque limits are omitted, because they are no reason
 /// to command less.
 pub fn correction(arm: &Arm, effects: &[Effect]) -> anyhow::Result<Corrected> {
-    let asked = effects.iter().filter(|effect| !effect.is(&TorqueSaturation));
+    let asked = effects.iter().filter(|effect| !effect.is(&TORQUE_SATURATION));
     Ok(Corrected::new(arm, &asked.cloned().collect::<Vec<_>>())?)
 }
 

@@ -1,9 +1,9 @@
 //! Tracking with each model on machines with known effects.
 
 use effects::Effect;
-use effects::drive::{ActuationDelay, JointElasticity, RotorInertia};
-use effects::friction::QuadraticDrag;
-use effects::sensor::{EncoderOffset, TorqueScale};
+use effects::drive::{ACTUATION_DELAY, JOINT_ELASTICITY, ROTOR_INERTIA};
+use effects::friction::QUADRATIC_DRAG;
+use effects::sensor::{ENCODER_OFFSET, TORQUE_SCALE};
 use faults::{Injected, Settings, conceal_effects, write_case};
 
 use super::*;
@@ -18,7 +18,7 @@ fn tracked(effects: &[Injected], named: &[Effect]) -> CaseTracking {
     let case = write_case(&concealment, folder.path(), &folder.path().join("truth")).expect("it can be written");
     let joints = robots[0].arm().joints().iter().zip(robots[0].rotor_inertias());
     let drives =
-        joints.map(|(joint, &inertia)| Effect::of(&RotorInertia).on(joint.name.clone()).with("inertia", inertia));
+        joints.map(|(joint, &inertia)| Effect::of(&ROTOR_INERTIA).on(joint.name.clone()).with("inertia", inertia));
     let file = EffectFile { robot: None, effects: drives.chain(named.iter().cloned()).collect() };
     let case = Case {
         robot: &robots[0],
@@ -39,7 +39,7 @@ fn errors(tracking: &CaseTracking) -> [f64; 5] {
 fn a_true_name_tracks_as_the_exact_model_does() {
     let joint = || "joint2".to_owned();
     let drag = Injected::new("quadratic_drag", Some("joint2")).with("coefficient", 40.0);
-    let named = Effect::of(&QuadraticDrag).on(joint()).with("coefficient", 40.0).with("exponent", 2.0);
+    let named = Effect::of(&QUADRATIC_DRAG).on(joint()).with("coefficient", 40.0).with("exponent", 2.0);
     let tracking = tracked(&[drag], &[named]);
     let [nominal, diagnosed, learned, _, exact] = errors(&tracking);
     assert!(exact < 0.01 * nominal && learned > 10.0 * exact, "{exact} {learned} {nominal}");
@@ -61,10 +61,10 @@ fn delays_offsets_and_deflections_are_compensated() {
     ];
     let joint = |name: &str| format!("joint{name}");
     let named = [
-        Effect::of(&ActuationDelay).on(joint("1")).with("delay", 0.0085),
-        Effect::of(&EncoderOffset).on(joint("2")).with("offset", 0.03),
-        Effect::of(&JointElasticity).on(joint("3")).with("stiffness", 900.0).with("damping", 2.0),
-        Effect::of(&TorqueScale).on(joint("5")).with("factor", 1.3),
+        Effect::of(&ACTUATION_DELAY).on(joint("1")).with("delay", 0.0085),
+        Effect::of(&ENCODER_OFFSET).on(joint("2")).with("offset", 0.03),
+        Effect::of(&JOINT_ELASTICITY).on(joint("3")).with("stiffness", 900.0).with("damping", 2.0),
+        Effect::of(&TORQUE_SCALE).on(joint("5")).with("factor", 1.3),
     ];
     let tracking = tracked(&effects, &named);
     let [nominal, diagnosed, learned, _, exact] = errors(&tracking);

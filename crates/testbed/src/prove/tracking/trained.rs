@@ -7,7 +7,7 @@ use anyhow::Context;
 use arm::Arm;
 use diagnosis::{Input, Options, Trace};
 use effects::Effect;
-use effects::drive::{ActuationDelay, TorqueSaturation};
+use effects::drive::{ACTUATION_DELAY, TORQUE_SATURATION};
 use recording::{Recording, RegularRecording};
 use torque::{Learned, Prediction, Workspace};
 use validate::learned::{self, LearnedOptions, RecordedMotion};
@@ -88,9 +88,9 @@ impl Recorded {
 fn applied(trace: &Trace, j: usize, effects: &[Effect], joint: &str) -> Vec<f64> {
     let (mut late, mut most) = (0.0, f64::INFINITY);
     for effect in effects.iter().filter(|effect| effect.joint() == Some(joint)) {
-        if effect.is(&ActuationDelay) {
+        if effect.is(&ACTUATION_DELAY) {
             late += effect.number("delay");
-        } else if effect.is(&TorqueSaturation) {
+        } else if effect.is(&TORQUE_SATURATION) {
             most = effect.number("limit").min(most);
         }
     }

@@ -4,7 +4,8 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use crate::spec::{Parameter, Shape, Spec};
+use super::{Parameter, Shape, Spec};
+use crate::term::Term;
 
 /// The value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +47,7 @@ impl Value {
     }
 }
 
-/// One effect with its parameters in SI units at the joint; a joint is named as in the URDF. [`Effect::of`] makes it of a kind.
+/// One effect with its parameters in SI units at the joint; a joint is named as in the URDF. [`Effect::of`] makes it of a spec.
 ///
 /// For a prismatic joint read N for N m and m for rad. The torque of an effect is what it adds to the measured torque
 /// beyond the torque of the rigid model.
@@ -61,8 +62,9 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// An effect with this spec, without a joint. A parameter that has no default and is not set is NaN.
-    pub(crate) fn with_spec(spec: &'static Spec) -> Self {
+    /// An effect with this spec, without a joint. A parameter that has no default and is not set is NaN, which
+    /// [`check`](crate::check) refuses.
+    pub fn of(spec: &'static Spec) -> Self {
         let blank = |parameter: &Parameter| {
             let number = parameter.default.unwrap_or(f64::NAN);
             match parameter.shape {
@@ -108,6 +110,11 @@ impl Effect {
         self.spec.parameters.iter().position(|parameter| parameter.key == key)
     }
 
+    /// Whether it has this spec.
+    pub fn is(&self, spec: &'static Spec) -> bool {
+        std::ptr::eq(self.spec, spec)
+    }
+
     /// What is known of its kind.
     pub fn spec(&self) -> &'static Spec {
         self.spec
@@ -116,6 +123,21 @@ impl Effect {
     /// The catalogue's name of the effect.
     pub fn name(&self) -> &'static str {
         self.spec.name
+    }
+
+    /// The title of the effect with its parameters.
+    pub fn title(&self) -> &'static str {
+        (self.spec.own_title)(self).unwrap_or(self.spec.title)
+    }
+
+    /// The effect as a short phrase with its parameters, in the form of [`Spec::sentence`].
+    pub fn sentence(&self) -> &'static str {
+        (self.spec.own_sentence)(self).unwrap_or(self.spec.sentence)
+    }
+
+    /// Its term on the joint of an index, as [`Spec::of_torque`] gives it.
+    pub fn of_torque(&self, joint: usize) -> Option<Term> {
+        (self.spec.of_torque)(self, joint)
     }
 
     /// The joint it is on; `None` for the whole arm.
