@@ -10,6 +10,7 @@ pub mod inertials;
 pub mod locate;
 pub mod observability;
 mod other_friction;
+mod own_friction;
 pub mod sentences;
 pub mod traces;
 pub mod transients;

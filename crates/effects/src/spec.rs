@@ -184,6 +184,9 @@ pub struct Spec {
     pub may_be_inertial: bool,
     /// The effect with the same torque if this one acts on all joints.
     pub same_on_all_joints: Option<&'static str>,
+    /// The least ratio of its torque on one of its joints to what the model leaves unexplained there, on all training rows. With less, it may
+    /// be a part of something that is not in the catalogue.
+    pub least_over_error: Option<f64>,
     /// The usual coefficients of its first column; others require more evidence.
     pub usual: Option<[f64; 2]>,
     /// Effects on its joint whose error of form resembles it, with the part of each that it must exceed.
@@ -298,6 +301,7 @@ impl Spec {
         is_suggested: false,
         may_be_inertial: false,
         same_on_all_joints: None,
+        least_over_error: None,
         usual: None,
         least_beside: &[],
         least_beside_residual: None,

@@ -8,17 +8,26 @@ const LEAST_RUNS: usize = 20;
 const ALIKE: f64 = 0.8;
 /// Samples of positions that are held for more rows than this may be held for one more or one less.
 const DRIFTS_FROM: usize = 3;
+/// The largest number of rows with which a sample is repeated once in a while; a longer stretch is a rest.
+const MOST_REPEATED: usize = 5;
+/// The least share of the rows that repeat the row before while the arm moves. By chance, and at a low speed, hardly any does.
+const LEAST_REPEATED: f64 = 0.01;
 /// Two steps of a position are those of the same encoder if they differ by less than this part.
 const SAME_LINE: f64 = 0.01;
 
-/// The recording with each sample once, and a warning, if samples were written several times, or if positions were refreshed in some of the
-/// rows only, whatever the other signals do; `None` otherwise.
+/// The recording with each sample once, and a warning, if samples were written several times, always or once in a while, or if positions
+/// were refreshed in some of the rows only, whatever the other signals do; `None` otherwise.
 ///
 /// The positions of repeated samples are constant and then jump, so that their derivatives are meaningless, and they are older than the
 /// torques of the same rows.
 pub fn without_held(recording: &Recording) -> Option<(Recording, Warning)> {
-    if let Some((held, samples)) = samples(&runs(recording, true), &is_multiple) {
+    let equal = runs(recording, true);
+    if let Some((held, samples)) = samples(&equal, &is_multiple) {
         let warning = Warning::Held { rows: recording.len(), samples: samples.len(), held };
+        return Some((picked(recording, &samples), warning));
+    }
+    if let Some(samples) = once_in_a_while(recording, &equal) {
+        let warning = Warning::Repeated { rows: recording.len(), repeated: recording.len() - samples.len() };
         return Some((picked(recording, &samples), warning));
     }
     let runs = runs(recording, false);
@@ -75,6 +84,22 @@ fn samples(runs: &[(usize, usize)], is_alike: &dyn Fn(usize, usize) -> bool) -> 
         .iter()
         .flat_map(|&(first, length)| (0..times(length)).map(move |sample| first + (sample * held).min(length - 1)));
     Some((held, rows.collect()))
+}
+
+/// The rows without those that repeat the row before while the arm moves: a logger writes the last value when no new one has come. `None` if
+/// there are hardly any.
+fn once_in_a_while(recording: &Recording, runs: &[(usize, usize)]) -> Option<Vec<usize>> {
+    let moves = |row: usize| recording.q.iter().any(|q| q[row] != q[row - 1]);
+    let is_repeated = |&(first, length): &(usize, usize)| {
+        let next = first + length;
+        (2..=1 + MOST_REPEATED).contains(&length)
+            && (first == 0 || moves(first))
+            && (next == recording.len() || moves(next))
+    };
+    let kept = runs.iter().flat_map(|run| run.0..if is_repeated(run) { run.0 + 1 } else { run.0 + run.1 });
+    let kept: Vec<usize> = kept.collect();
+    let repeated = recording.len() - kept.len();
+    (repeated as f64 >= LEAST_REPEATED * recording.len() as f64).then_some(kept)
 }
 
 /// First row and length of each stretch of rows with the same positions, and, with `all`, the same velocities and torques.
@@ -149,6 +174,16 @@ mod tests {
         let (regular, warnings) = recording.regular().expect("it has a clock");
         assert!(warnings.contains(&expected), "{warnings:?}");
         assert!((regular.period - 0.01).abs() < 1e-4, "{}", regular.period);
+    }
+
+    #[test]
+    fn rows_that_are_repeated_once_in_a_while_are_left_out() {
+        let recording = written(|sample| if sample % 10 == 3 { 2 } else { 1 });
+        let (thinned, warning) = without_held(&recording).expect("rows are repeated");
+        assert_eq!((thinned.len(), warning), (500, Warning::Repeated { rows: 550, repeated: 50 }));
+        let (regular, _) = recording.regular().expect("it has a clock");
+        assert_eq!((regular.period, regular.len()), (0.0025, 550));
+        assert!(without_held(&written(|sample| if sample % 200 == 3 { 2 } else { 1 })).is_none(), "two of 500");
     }
 
     #[test]

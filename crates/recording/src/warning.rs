@@ -50,6 +50,13 @@ pub enum Warning {
         /// The number of rows of most samples.
         held: usize,
     },
+    /// Some rows repeat all values of the row before while the arm moves; they were omitted.
+    Repeated {
+        /// The number of rows read.
+        rows: usize,
+        /// The number of rows that repeat the one before.
+        repeated: usize,
+    },
     /// The positions were refreshed in some of the rows only; the others were omitted.
     HeldPositions {
         /// The number of rows read.
@@ -229,6 +236,11 @@ impl fmt::Display for Warning {
             Self::Held { rows, samples, held } => write!(
                 f,
                 "each sample stands in {held} rows: of {rows} rows {samples} are used, each sample once (record at the drive's rate)"
+            ),
+            Self::Repeated { rows, repeated } => write!(
+                f,
+                "{repeated} of {rows} rows repeat all values of the row before while the arm moves: they are left out (the logger wrote the \
+                 last value again where none had come)"
             ),
             Self::HeldPositions { rows, samples, held } => write!(
                 f,

@@ -15,7 +15,7 @@ use super::verdict::{
     ask_for_motion, beyond_limits, known_too_large, moves_in_training, not_enough, poorly_predicted, unexplained,
     verdict, with_places,
 };
-use super::{at_rest, dual_sensor, gaps, sentences, transients};
+use super::{at_rest, dual_sensor, gaps, own_friction, sentences, transients};
 use crate::data::Data;
 use crate::data::input::Input;
 use crate::data::motion::SourceRecording;
@@ -142,6 +142,7 @@ impl Conclusion {
             sentences::not_compared(data),
             sentences::placeholders(&data.arm, &study.strengths.least),
             at_rest::note(last),
+            own_friction::note(last),
             torque_constants::note_on_unnamed(study, &judged.named),
             torque_constants::note_on_alike(study, &judged.named),
             coupling::note(study, &judged.named),

@@ -29,8 +29,19 @@ pub struct Prior {
     links: Vec<Quadratic>,
     /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
     deviations: Vec<f64>,
+    /// What is known of a load that some recordings have of their own.
+    own_load: Option<LoadPrior>,
     /// A new one whenever the prior changes, by which cached products are recognised.
     identity: Arc<()>,
+}
+
+/// The prior of the ten inertial parameters of a load that some recordings have of their own.
+#[derive(Clone, Debug)]
+pub struct LoadPrior {
+    /// Their most probable values.
+    pub centre: [f64; PER_LINK],
+    /// Their standard deviations.
+    pub deviations: [f64; PER_LINK],
 }
 
 /// The background at given strengths: its columns and their precision.
@@ -46,8 +57,8 @@ pub struct Background {
     pub log_det: f64,
     /// The evidence that its strengths must bring (nats).
     pub cost: f64,
-    /// The strength of friction.
-    pub friction: f64,
+    /// Its strengths.
+    pub strengths: Strengths,
     /// Whether it is the lag of the torques alone, so that the model is taken as exact.
     pub is_lag_alone: bool,
 }
@@ -63,15 +74,15 @@ impl Background {
 impl Prior {
     /// The prior for an arm with the inertial `parameters` (ten per link) and the least `radii` of gyration about which they may have. The torques of its joints have the standard
     /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
-    /// move each joint. A load that some recordings have of their own has ten inertial parameters with the standard deviations
-    /// `own_load`.
+    /// move each joint. `own_load` is what is known of a load that some
+    /// recordings have of their own.
     pub fn new(
         parameters: &[f64],
         radii: &[f64],
         torque: &[f64],
         speed: &[f64],
         moved: &[Vec<usize>],
-        own_load: Option<&[f64; PER_LINK]>,
+        own_load: Option<LoadPrior>,
     ) -> Self {
         let mut prior = Self { nominal: parameters.to_vec(), radii: radii.to_vec(), ..Self::default() };
         prior.set_bodies(&vec![0.0; parameters.len()]);
@@ -103,9 +114,10 @@ impl Prior {
         if (0..moved.len()).filter(|&joint| torque[joint] > 0.0 && speed[joint] > 0.0).count() >= LEAST_LAGGING {
             prior.push(Term::about(&LAG, 0), LAG_PRIOR);
         }
-        for (parameter, &deviation) in own_load.into_iter().flatten().enumerate() {
+        for (parameter, &deviation) in own_load.iter().flat_map(|load| load.deviations.iter().enumerate()) {
             prior.push(Term::about(&OWN_LOAD, moved.len() - 1).of(parameter), deviation);
         }
+        prior.own_load = own_load;
         prior
     }
 
@@ -195,6 +207,7 @@ impl Prior {
                     (false, false) => strengths.offset,
                 }
             }
+            term if term.is(&OWN_FRICTION) => strengths.own_friction(term.joint, term.of[0]),
             _ => strengths.friction,
         };
         let columns: Vec<usize> = (0..self.terms.len()).filter(|&column| strength(column) > 0.0).collect();
@@ -216,6 +229,7 @@ impl Prior {
         let precision = DMatrix::from_fn(columns.len(), columns.len(), |i, k| entry(&columns[i], &columns[k]));
         let centre = |&column: &usize| match self.terms[column] {
             term if term.is(&INERTIAL_PARAMETER) => self.links[term.of[0]].centre[term.of[1]],
+            term if term.is(&OWN_LOAD) => self.own_load.as_ref().map_or(0.0, |load| load.centre[term.of[1]]),
             _ => 0.0,
         };
         let centre = DVector::from_iterator(columns.len(), columns.iter().map(centre));
@@ -227,7 +241,7 @@ impl Prior {
             precision,
             log_det,
             cost: strengths.cost(),
-            friction: strengths.friction,
+            strengths: strengths.clone(),
             is_lag_alone,
         })
     }

@@ -54,7 +54,7 @@ impl Stated {
         let first = self.first(strengths.links.len());
         (self.links.is_none() || strengths.links == first.links)
             && (self.gain.is_none() || strengths.gain == first.gain)
-            && (!self.is_friction_plain || strengths.friction == 0.0)
+            && (!self.is_friction_plain || strengths.friction == 0.0 && strengths.varied.is_empty())
             && (!self.is_lag_known || !strengths.lag)
     }
 }

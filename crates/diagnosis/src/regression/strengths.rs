@@ -5,6 +5,7 @@ use std::fmt;
 use crate::thresholds::{
     BEYOND_STRONGEST, CONSTANTS_BESIDE_LINKS, FINER_STRENGTH, FRICTION_STRENGTHS, GAIN_STRENGTHS, LAG_COST,
     LINK_STRENGTHS, OFFSET_STRENGTHS, OWN_STRENGTHS, PER_BACKGROUND_PART, PER_LINK_APART, USUAL_STRENGTH,
+    VARIED_FRICTION,
 };
 
 /// The strengths of the parts of the background, as standard deviations; zero switches a part off.
@@ -16,6 +17,8 @@ pub struct Strengths {
     pub least: Vec<f64>,
     /// The form of each joint's friction, relative to its prior.
     pub friction: f64,
+    /// Friction that is much different in some recordings.
+    pub varied: Vec<Varied>,
     /// The constant torques of the joints, relative to their prior.
     pub offset: f64,
     /// The torque constants, relative to their prior.
@@ -32,6 +35,15 @@ pub struct Strengths {
     pub impossible_constants: Vec<usize>,
     /// Whether a lag of all torques is in the background.
     pub lag: bool,
+}
+
+/// The friction of a joint that is much different in one of the recordings, or in each (`None`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Varied {
+    /// The joint.
+    pub joint: usize,
+    /// The recording.
+    pub recording: Option<usize>,
 }
 
 /// A part of the background that [`Strengths::weaker`] reduces.
@@ -57,6 +69,10 @@ impl fmt::Display for Strengths {
             self.offset,
             self.gain
         )?;
+        for Varied { joint, recording } in &self.varied {
+            let recording = recording.map_or("each recording".to_owned(), |recording| format!("recording {recording}"));
+            write!(f, "; friction of joint {joint} in {recording}")?;
+        }
         if self.lag { write!(f, "; lag") } else { Ok(()) }
     }
 }
@@ -68,6 +84,7 @@ impl Strengths {
             links: vec![0.0; links],
             least: vec![0.0; links],
             friction: 0.0,
+            varied: Vec::new(),
             offset: 0.0,
             gain: 0.0,
             named_offsets: Vec::new(),
@@ -87,6 +104,13 @@ impl Strengths {
     /// ρ of a link.
     pub fn of_link(&self, link: usize) -> f64 {
         self.links[link].max(self.least[link])
+    }
+
+    /// The strength of the friction of a joint that a recording has of its own.
+    pub fn own_friction(&self, joint: Option<usize>, recording: usize) -> f64 {
+        let is_this =
+            |varied: &Varied| Some(varied.joint) == joint && varied.recording.is_none_or(|varied| varied == recording);
+        if self.varied.iter().any(is_this) { self.friction.max(VARIED_FRICTION) } else { self.friction }
     }
 
     /// Whether the centre of mass of some link is a placeholder.
@@ -134,7 +158,7 @@ impl Strengths {
             + part(f64::from(u8::from(self.lag)), LAG_COST)
             + part(common, PER_BACKGROUND_PART)
             + unlikely
-            + PER_LINK_APART * (apart + several) as f64
+            + PER_LINK_APART * (apart + several + self.varied.len()) as f64
     }
 
     /// The strengths that are tried for one link, below and above that of most links.
@@ -179,6 +203,33 @@ impl Strengths {
     pub fn with_other_offsets(&self) -> Vec<Self> {
         let others = OFFSET_STRENGTHS.into_iter().filter(|&offset| offset != self.offset);
         others.map(|offset| Self { offset, ..self.clone() }).collect()
+    }
+
+    /// The strengths that differ from these in one link, or in the friction of one joint in some of these `recordings`.
+    pub fn in_one_place(&self, recordings: &[usize]) -> Vec<Self> {
+        let with = |varied: Vec<Varied>| Self { varied, ..self.clone() };
+        let without = |which: &dyn Fn(&Varied) -> bool| -> Vec<Varied> {
+            self.varied.iter().copied().filter(|varied| !which(varied)).collect()
+        };
+        let and = |mut list: Vec<Varied>, joint: usize, recording: Option<usize>| {
+            list.push(Varied { joint, recording });
+            list.sort_unstable();
+            list
+        };
+        let mut list = self.with_other_links();
+        list.extend(self.varied.iter().map(|one| with(without(&|other| other == one))));
+        for joint in 0..self.links.len() {
+            if !self.varied.iter().any(|varied| varied.joint == joint) {
+                list.push(with(and(self.varied.clone(), joint, None)));
+            } else if recordings.len() > 2 {
+                // Of two recordings, none is the usual one.
+                let others = without(&|varied| varied.joint == joint && varied.recording.is_none());
+                let free = recordings.iter().map(|&recording| (joint, Some(recording)));
+                let free = free.filter(|&(joint, recording)| !self.varied.contains(&Varied { joint, recording }));
+                list.extend(free.map(|(joint, recording)| with(and(others.clone(), joint, recording))));
+            }
+        }
+        list
     }
 
     /// The strengths that differ from these in one link.
@@ -244,6 +295,9 @@ impl Strengths {
         for friction in FRICTION_STRENGTHS.into_iter().filter(|&friction| friction < self.friction) {
             list.push(Self { friction, ..self.clone() });
         }
+        if !self.varied.is_empty() {
+            list.push(Self { varied: Vec::new(), ..self.clone() });
+        }
         for gain in GAIN_STRENGTHS.into_iter().filter(|&gain| gain < self.gain) {
             list.push(Self { gain, ..self.clone() });
         }
@@ -254,7 +308,7 @@ impl Strengths {
     pub fn part_that_differs(&self, other: &Self) -> Part {
         if self.links != other.links {
             Part::Links
-        } else if self.friction != other.friction {
+        } else if self.friction != other.friction || self.varied != other.varied {
             Part::Friction
         } else {
             Part::Gain
@@ -263,7 +317,7 @@ impl Strengths {
 
     /// Whether friction curves or torque constants differ from the model's.
     pub fn is_of_joints(&self) -> bool {
-        self.friction > 0.0 || self.gain > 0.0
+        self.friction > 0.0 || self.gain > 0.0 || !self.varied.is_empty()
     }
 
     /// Whether there is no background that corrects the model, beside a lag of the torques.

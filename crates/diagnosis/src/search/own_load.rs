@@ -14,7 +14,7 @@ use self::equations::{LOAD, LoadEquations, Part, Solution, Variances, gains};
 use crate::data::Data;
 use crate::data::motion::Motions;
 use crate::data::statistics::NORMAL_95;
-use crate::regression::background::{Background, Prior};
+use crate::regression::background::{Background, LoadPrior, Prior};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::strengths::Strengths;
 use crate::regression::table::Table;
@@ -168,10 +168,26 @@ impl OwnLoad {
         self.recordings.contains(&in_order(motions)[0])
     }
 
-    /// Standard deviations for the ten inertial parameters of such a load in a background.
-    pub fn prior(&self) -> [f64; PER_LINK] {
+    /// Whether all recordings that have it are among those that are `fitted`, or all are held out.
+    pub fn is_of(&self, fitted: &[bool], are_fitted: bool) -> bool {
+        self.recordings.iter().all(|&recording| fitted[recording] == are_fitted)
+    }
+
+    /// The prior of its ten inertial parameters in a background. If only held-out recordings have it, no fit determines them: they are those
+    /// that the search found, of a body that is small beside its distance from the last link's frame.
+    pub fn prior(&self, fitted: &[bool]) -> LoadPrior {
         let reach = |k: usize| self.load[k].abs() + 2.0 * self.deviations[k];
-        std::array::from_fn(|k| if k < LOAD { reach(k) } else { reach(0) * LOAD_SIZE * LOAD_SIZE })
+        let deviations = std::array::from_fn(|k| if k < LOAD { reach(k) } else { reach(0) * LOAD_SIZE * LOAD_SIZE });
+        let mut centre = [0.0; PER_LINK];
+        if self.is_of(fitted, false) {
+            let [mass, x, y, z] = self.load;
+            let moments = [y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y];
+            centre[..LOAD].copy_from_slice(&self.load);
+            for (parameter, moment) in centre[LOAD..].iter_mut().zip(moments) {
+                *parameter = moment / mass;
+            }
+        }
+        LoadPrior { centre, deviations }
     }
 }
 

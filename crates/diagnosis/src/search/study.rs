@@ -11,8 +11,7 @@ use crate::data::Data;
 use crate::data::measure::{self, spans};
 use crate::data::statistics::mean;
 use crate::options::Options;
-use crate::regression::background::{Background, Prior};
-use crate::regression::bodies::PER_LINK;
+use crate::regression::background::{Background, LoadPrior, Prior};
 use crate::regression::fit::Products;
 use crate::regression::stated::Stated;
 use crate::regression::strengths::Strengths;
@@ -126,7 +125,9 @@ impl Study {
     pub fn with_own_load(self, options: &Options) -> Self {
         let motions = &self.data.motions;
         let found = OwnLoad::found(&self.data, &self.table, &self.prior);
-        let own_load = found.filter(|load| !(motions.one_clock && load.was_picked_up(motions)));
+        // An effect sets in within the training recordings.
+        let may_be_effect = |load: &OwnLoad| motions.one_clock && load.was_picked_up(motions);
+        let own_load = found.filter(|load| load.is_of(&self.data.fitted, false) || !may_be_effect(load));
         self.beside_load(options, own_load)
     }
 
@@ -145,12 +146,13 @@ impl Study {
             for &recording in &load.recordings {
                 data.motions.sources[recording].own_load_until = load.until.unwrap_or(f64::INFINITY);
             }
-            self = Self::with(data, options, Some(&load.prior()));
+            let prior = load.prior(&data.fitted);
+            self = Self::with(data, options, Some(prior));
         }
         Self { own_load, ..self }
     }
 
-    fn with(data: Data, options: &Options, own_load: Option<&[f64; PER_LINK]>) -> Self {
+    fn with(data: Data, options: &Options, own_load: Option<LoadPrior>) -> Self {
         let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
         let Data { arm, motions, rigid, scales, fitted, .. } = &data;
         let times: Vec<(f64, f64)> = spans(motions)

@@ -100,7 +100,7 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Onset)
         } else if nothing.contains(&member.candidate) {
             Some(Unclear::Size)
-        } else if is_part_of_the_residual(study, judged, member) {
+        } else if is_part_of_the_residual(study, judged, member) || is_below_error(study, judged, member) {
             Some(Unclear::Residual)
         } else if may_be_a_lag(study, judged, member) {
             Some(Unclear::Lag)
@@ -164,6 +164,20 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         Some(joint) => is_part(joint),
         None => (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0).all(is_part),
     }
+}
+
+/// Whether an effect that is no change is small beside the training error of each of its joints, and of a kind that then often stands for
+/// something that is not in the catalogue.
+fn is_below_error(study: &Study, judged: &Judged, member: &judge::Member) -> bool {
+    let candidate = &study.candidates[member.candidate];
+    let Some(factor) = candidate.hypothesis.spec().least_over_error.filter(|_| !study.changes(member.candidate)) else {
+        return false;
+    };
+    let is_below = |joint: usize| {
+        let fit = errors_with(&study.data, &study.table, &judged.named.fit, joint);
+        member.shares[joint] < factor * fit.train_nrmse_augmented
+    };
+    (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0).all(is_below)
 }
 
 /// Whether the effect is a torque along the velocity of another joint, and a lag of the torques of its joints explains as much. Where

@@ -200,3 +200,6 @@ pub const UNSURE_MASS: f64 = 0.5;
 /// The least held-out gain of a payload with an undetermined mass beside such links. Source: the same; the three had 0.22 at most, two true ones
 /// 0.73 and 0.74.
 pub const GAIN_BESIDE_LINKS: f64 = 0.25;
+/// The least difference of a joint's dry friction in one recording from that in most others, relative to its torque, that is noted. Source: as for
+/// `VARIED_FRICTION`.
+pub const OTHER_FRICTION: f64 = 0.04;

@@ -79,6 +79,9 @@ pub const OF_PLACEHOLDERS: f64 = 0.5;
 pub const FINER_STRENGTH: f64 = 1.4;
 /// The strengths of friction's form that are tried. Source: first background.
 pub const FRICTION_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
+/// The strength of the friction that each recording has of its own on a joint where it differs much between recordings: 15 % of the joint's
+/// torque. Source: simulated arms on which the friction of one joint was 1.5 to 2.6 times as large in one recording, 10 to 19 % of its torque.
+pub const VARIED_FRICTION: f64 = 10.0;
 /// The strengths of the joints' constant torques that are tried, relative to [`FRICTION_PRIOR`]. Source: recordings of
 /// ten real robots, of whose 54 joints six instead of nine have an error above 1.25 times that of full identification;
 /// they are selected in 17 of 24 simulated cases with small offsets and in one of 24 others.

@@ -26,6 +26,9 @@ pub static EXTERNAL_CONTACT: Spec = Spec {
     ],
     main: &["force"],
     may_repeat: true,
+    // In about 700 simulated cases, the 17 contacts that were not there had 0.3 to 0.75, and the 45 that were had 0.77 and more. Those that
+    // were not stood for a flexible or rolling base, liquid in the tool, drag on it, and a lag of one recording.
+    least_over_error: Some(0.76),
     prior: 8.0,
     may_be_in_one_recording: true,
     is_suggested: true,

@@ -25,6 +25,9 @@ pub static TRANSMISSION_COUPLING: Spec = Spec {
         Parameter::new("sense", Quantity::Ratio).or(1.0).remarked(""),
     ],
     main: &["viscous", "inertia", "coulomb"],
+    // In the same cases as those of `external_contact`, the 15 couplings that were not there had 0.6 to 1.9, and the others 2.2 and more.
+    // Those that were not stood for drag on the tool.
+    least_over_error: Some(2.0),
     is_beyond_the_drive: true,
     against: Against::OtherSpeed,
     has_other: true,

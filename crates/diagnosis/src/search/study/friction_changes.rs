@@ -18,12 +18,12 @@ impl Study {
     /// more than the change of any one joint, and then leaves nothing to the others.
     pub fn with_friction_that_changed(&mut self, selected: Selection) -> Selection {
         let changed: Vec<usize> = self.allowed().into_iter().filter(|&c| self.is_changed_friction(c)).collect();
-        if changed.is_empty() || self.strengths.friction == 0.0 {
+        if changed.is_empty() || self.strengths.friction == 0.0 && self.strengths.varied.is_empty() {
             return selected;
         }
         let before = self.strengths.clone();
         let others: Vec<usize> = selected.set.iter().copied().filter(|&c| !self.is_changed_friction(c)).collect();
-        self.strengths.friction = 0.0;
+        (self.strengths.friction, self.strengths.varied) = (0.0, Vec::new());
         let products = self.training_products();
         let problem = self.problem(&products);
         // More friction acts since the change, and what it was more before acts until then.

@@ -79,6 +79,7 @@ impl Study {
         let stronger = |strengths: &Strengths| {
             let pairs = strengths.links.iter().zip(&self.strengths.links);
             strengths.friction == self.strengths.friction
+                && strengths.varied == self.strengths.varied
                 && strengths.offset == self.strengths.offset
                 && strengths.gain == self.strengths.gain
                 && pairs.clone().all(|(new, old)| new >= old)
@@ -143,7 +144,7 @@ impl Study {
             self.note_tried(&selected, &std::mem::take(&mut growth.tried));
             let mut stronger = self.strengthened(&selected, self.strengths.neighbours());
             if grown.is_none() && stronger.is_none() {
-                let others = self.strengths.with_other_links().into_iter();
+                let others = self.strengths.in_one_place(&self.data.training()).into_iter();
                 let others = others.chain(self.strengths.in_one_link()).collect();
                 stronger = self.strengthened(&selected, others);
             }
@@ -234,13 +235,15 @@ impl Study {
 
     /// `selected` with the strengths of the background that the evidence prefers.
     pub fn with_best_strengths(&mut self, mut selected: Selection) -> Selection {
+        let training = self.data.training();
+        let in_one_place = |strengths: &Strengths| strengths.in_one_place(&training);
         for _ in 0..MOST_MOVES {
-            let kinds = [
-                Strengths::neighbours,
-                Strengths::with_other_links,
-                Strengths::in_one_link,
-                Strengths::with_other_offsets,
-                Strengths::finer,
+            let kinds: [&dyn Fn(&Strengths) -> Vec<Strengths>; 5] = [
+                &Strengths::neighbours,
+                &in_one_place,
+                &Strengths::in_one_link,
+                &Strengths::with_other_offsets,
+                &Strengths::finer,
             ];
             let next = kinds.into_iter().find_map(|others| self.strengthened(&selected, others(&self.strengths)));
             match next {
