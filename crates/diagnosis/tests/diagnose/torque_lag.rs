@@ -1,10 +1,8 @@
 //! Torques that were recorded later than the positions, on all joints or on one.
 
-mod support;
-
+use crate::support::{baseline_friction, effects_on, inputs, named, recorded, regular, sentences, trio};
 use diagnosis::{Action, Diagnosis, Options, Parameter, diagnose};
 use recording::RegularRecording;
-use support::{baseline_friction, effects_on, inputs, named, recorded, regular, sentences, trio};
 
 /// The time constant of the filter in the drives (s), which is its lag at low frequencies.
 const LAG: f64 = 0.012;

@@ -1,21 +1,19 @@
 //! Effects and their nearest rivals: each is found if it is injected, and not named if the rival is injected.
 
-mod support;
-
+use crate::support::{
+    ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, start,
+    trio,
+};
 use arm::{Arm, Matrix6xX, Workspace};
 use diagnosis::{Options, diagnose};
 use effects::Effect;
 use effects::drive::{ACTUATION_DELAY, BACKLASH, TORQUE_SATURATION};
 use recording::RegularRecording;
-use support::{
-    ELBOW, Injected, Motion, SHOULDER, TURN, baseline_friction, diagnosed, inputs, recorded, regular, sentences, start,
-    trio,
-};
 
 /// The findings beside baseline friction of the expected sizes: effects and joints.
 fn names(diagnosis: &diagnosis::Diagnosis) -> Vec<(&str, &str)> {
     let place = |(effect, joint): (_, Option<_>)| (effect, joint.unwrap_or("the whole arm"));
-    support::named(diagnosis).into_iter().map(place).collect()
+    crate::support::named(diagnosis).into_iter().map(place).collect()
 }
 
 /// Checks that the findings of the diagnosis of `injected` are `expected` and nothing is unexplained; returns the

@@ -1,10 +1,8 @@
 //! What each of the thresholds that can be varied decides: moved far enough, it takes a name from an effect that has one with its
 //! default, or the dependence from an unexplained residual.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed_with, trio};
 use diagnosis::{Options, Report, Thresholds};
-use support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed_with, trio};
 
 /// A spring on the shoulder.
 fn spring(motion: &mut Motion, tau: &mut [f64]) {

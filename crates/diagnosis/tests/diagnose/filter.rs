@@ -1,10 +1,10 @@
 //! The second look through a slower filter, on a drive that swings on the ends of a gap in its gear, and noise that passes the filter.
 
-mod support;
-
+use crate::support::gap::with_gap;
+use crate::support::{
+    TURN, baseline_friction, diagnosed_with, effects_on, inputs, named, recorded, regular, sentences, trio,
+};
 use diagnosis::{Action, Diagnosis, Options, diagnose};
-use support::gap::with_gap;
-use support::{TURN, baseline_friction, diagnosed_with, effects_on, inputs, named, recorded, regular, sentences, trio};
 
 /// Half the gap (rad).
 const HALFGAP: f64 = 0.013;

@@ -1,11 +1,9 @@
 //! What resembles an effect of the catalogue most keeps its own name, and is not taken for that effect.
 
-mod support;
-
+use crate::support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, named, sentences, trio};
 use arm::{Arm, Vector3};
 use diagnosis::Dependence;
 use effects::Regressor;
-use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, diagnosed, named, sentences, trio};
 
 /// Checks that the findings beside plain friction on recordings of `robot` are `expected`; `None` is the whole arm. Returns what every
 /// unexplained residual depends on, with its joint.

@@ -1,10 +1,10 @@
 //! Friction curves of real drives: neither their form nor their change between recordings is named as another effect.
 
-mod support;
-
+use crate::support::{
+    ELBOW, Motion, baseline_friction, diagnosed, effects_on, recorded, regular, sentences, start, trio,
+};
 use diagnosis::{Diagnosis, Input, Options, diagnose};
 use recording::RegularRecording;
-use support::{ELBOW, Motion, baseline_friction, diagnosed, effects_on, recorded, regular, sentences, start, trio};
 
 /// Friction that only reaches its level at some speed is not larger at standstill.
 #[test]

@@ -1,11 +1,9 @@
 //! Effects that a part of the recordings hides: their own joint, the size of the held-out torques, noise.
 
-mod support;
-
 use std::cell::Cell;
 
+use crate::support::{ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, named, sentences, start, trio};
 use arm::{Inertia, Matrix3, Vector3, Workspace};
-use support::{ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, named, sentences, start, trio};
 
 /// Uniform noise between −0.5 and 0.5, of a multiplicative congruential generator (Lehmer).
 fn noise(state: &Cell<u64>) -> f64 {

@@ -1,19 +1,17 @@
 //! Wrong masses, also beside a drive that hides them.
 
-mod support;
-
+use crate::support::{
+    Injected, Motion, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
+};
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options};
 use effects::arm::{PAYLOAD, exists, payload_body};
-use support::{
-    Injected, Motion, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
-};
 
 /// The findings beside plain friction: effect and joint.
 fn named(robot: &Arm, injected: Injected<'_>) -> Vec<(String, Option<String>)> {
     let diagnosis = diagnosed(&trio(), robot, injected, Vec::new());
     let owned = |(effect, joint)| of(effect, joint);
-    let mut special: Vec<_> = support::named(&diagnosis).into_iter().map(owned).collect();
+    let mut special: Vec<_> = crate::support::named(&diagnosis).into_iter().map(owned).collect();
     special.sort();
     assert!(diagnosis.report.unexplained.is_empty(), "{:?}", sentences(&diagnosis));
     special
@@ -74,7 +72,7 @@ fn exact_torque_constants_name_each_scale_once() {
     };
     let options = Options { torque_accuracy: Some(0.0), ..Options::default() };
     let diagnosis = diagnosed_with(&trio(), &trio(), &injected, &options).expect("it can be diagnosed");
-    assert_eq!(support::named(&diagnosis), [("torque_scale", Some("shoulder"))], "{:?}", sentences(&diagnosis));
+    assert_eq!(crate::support::named(&diagnosis), [("torque_scale", Some("shoulder"))], "{:?}", sentences(&diagnosis));
 }
 
 /// A forearm that is too heavy for the URDF hides most of a torque constant of the shoulder that is too small. The recordings determine
@@ -118,7 +116,7 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
         let robot = trio().with_link_inertia(link, body);
         let diagnosis = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), Vec::new());
         let name = trio().joints()[link].name.clone();
-        let found = support::named(&diagnosis);
+        let found = crate::support::named(&diagnosis);
         assert_eq!(found, [("inertial_parameters", Some(name.as_str()))], "{:?}", sentences(&diagnosis));
         let com = &diagnosis.report.inertials[&name].parameters;
         for (key, nominal, off) in [
@@ -150,7 +148,7 @@ fn a_common_factor_has_a_pair_of_links_as_its_alternative() {
 /// The diagnosis of a PUMA 560 with dry friction and a payload of `mass` (kg) with this centre of mass. The links have these
 /// `factors` on their inertial parameters, and the centre of mass of the upper arm is `off` from where the URDF has it (m).
 fn loaded(mass: f64, com: [f64; 3], factors: [f64; 6], off: [f64; 3]) -> Diagnosis {
-    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    const PUMA: &str = include_str!("../../../../assets/puma560.urdf");
     let believed = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
     let factors = factors.into_iter().enumerate();
     let links = factors.fold(believed.clone(), |arm, (link, factor)| arm.with_scaled_link(link, factor));
@@ -220,7 +218,7 @@ fn a_special_form_of_wrong_links_is_an_alternative_of_them() {
 /// The diagnosis of a PUMA 560 with dry friction and a `payload` (kg) at the centre of its wrist. Masses and centres of mass of its
 /// links differ from the URDF by `strength` times the draws of `seed`.
 fn wrong_everywhere(seed: u64, strength: f64, payload: f64) -> Diagnosis {
-    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    const PUMA: &str = include_str!("../../../../assets/puma560.urdf");
     let believed = Arm::from_urdf_text(PUMA, "puma560.urdf").expect("it is an arm");
     let mut robot = believed.clone();
     let draw = |k: usize| {
@@ -305,12 +303,12 @@ fn a_placeholder_is_not_believed() {
         let body = Inertia { com: Vector3::zeros(), ..arm.joints()[link].inertia };
         arm.with_link_inertia(link, body)
     };
-    let urdf = support::TRIO.replace("</robot>", "<link name=\"tool\"/><joint name=\"tip\" type=\"fixed\"><parent link=\"fore\"/><child link=\"tool\"/><origin xyz=\"0.3 0 0\"/></joint></robot>");
+    let urdf = crate::support::TRIO.replace("</robot>", "<link name=\"tool\"/><joint name=\"tip\" type=\"fixed\"><parent link=\"fore\"/><child link=\"tool\"/><origin xyz=\"0.3 0 0\"/></joint></robot>");
     let robot = Arm::from_urdf_text(&urdf, "trio.urdf").expect("it is an arm");
-    let believed = placeholder(placeholder(robot.clone(), support::SHOULDER), support::ELBOW);
+    let believed = placeholder(placeholder(robot.clone(), crate::support::SHOULDER), crate::support::ELBOW);
     let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
     let diagnosis = diagnosed(&believed, &robot, &friction, Vec::new());
-    let named = support::named(&diagnosis);
+    let named = crate::support::named(&diagnosis);
     assert!(named.iter().all(|(effect, _)| *effect == "inertial_parameters"), "{named:?}");
     let remarks = diagnosis.remarks.join("; ");
     assert!(remarks.contains("exactly at the joint on upper and fore"), "{remarks}");

@@ -1,16 +1,14 @@
 //! The next experiment: a motion within the limits that distinguishes what the recordings do not, and no motion if none
 //! does.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular, trio};
 use diagnosis::{Diagnosis, NextExperiment, Obstacle, Options, diagnose};
 use effects::Effect;
 use effects::drive::TORQUE_SATURATION;
 use recording::{Recording, RegularRecording};
-use support::{ELBOW, Motion, SHOULDER, diagnosed_with, inputs, recorded, regular, trio};
 use torque::Reference;
 
-fn proposed(injected: support::Injected<'_>) -> (Diagnosis, NextExperiment) {
+fn proposed(injected: crate::support::Injected<'_>) -> (Diagnosis, NextExperiment) {
     let options = Options { next: true, ..Options::default() };
     let diagnosis = diagnosed_with(&trio(), &trio(), injected, &options).expect("it can be diagnosed");
     let next = diagnosis.report.next_experiment.clone().expect("it was asked for");
@@ -31,7 +29,7 @@ fn is_confused(diagnosis: &Diagnosis, effect: &str, rival: &str) -> bool {
 }
 
 /// A recording of the arm with the torques `injected` along `reference`.
-fn made(reference: &Reference, seconds: f64, injected: support::Injected<'_>) -> Recording {
+fn made(reference: &Reference, seconds: f64, injected: crate::support::Injected<'_>) -> Recording {
     let along = |motion: &mut Motion, tau: &mut [f64]| {
         let mut wanted = torque::Motion::new(3);
         reference.at(motion.time, &mut wanted);
@@ -121,7 +119,7 @@ fn a_motion_stays_within_the_limits() {
         assert!(at.qd.iter().chain(&at.qdd).all(|&v| v == 0.0));
     }
     // For a weak and slow arm, a motion that it can perform is proposed.
-    let weak = support::TRIO.replace("effort=\"200\" velocity=\"5\"", "effort=\"45\" velocity=\"1.5\"");
+    let weak = crate::support::TRIO.replace("effort=\"200\" velocity=\"5\"", "effort=\"45\" velocity=\"1.5\"");
     let weak = arm::Arm::from_urdf_text(&weak, "weak.urdf").expect("it is an arm");
     let options = Options { next: true, ..Options::default() };
     let diagnosis = diagnosed_with(&weak, &weak, &friction, &options).expect("it can be diagnosed");
@@ -159,11 +157,15 @@ fn the_proposal_does_not_depend_on_the_threads() {
 #[test]
 fn an_offset_beside_larger_friction_has_advice() {
     let offset = |motion: &mut Motion, tau: &mut [f64]| {
-        support::baseline_friction(motion, tau);
+        crate::support::baseline_friction(motion, tau);
         tau[ELBOW] += 3.0 * motion.qd[ELBOW].signum() + 0.3;
     };
     let (diagnosis, next) = proposed(&offset);
-    assert!(is_confused(&diagnosis, "torque_offset", "friction_asymmetry"), "{:?}", support::sentences(&diagnosis));
+    assert!(
+        is_confused(&diagnosis, "torque_offset", "friction_asymmetry"),
+        "{:?}",
+        crate::support::sentences(&diagnosis)
+    );
     let mut pairs = next.not_separated.iter();
     let pair = pairs.find(|pair| pair.rival.effect == "friction_asymmetry");
     let pair = pair.expect("it is said");
@@ -176,7 +178,7 @@ fn an_offset_beside_larger_friction_has_advice() {
 #[test]
 fn no_motion_is_promised_for_an_offset_with_an_onset() {
     let later = |motion: &mut Motion, tau: &mut [f64]| {
-        support::baseline_friction(motion, tau);
+        crate::support::baseline_friction(motion, tau);
         if motion.clock >= 1006.0 {
             tau[ELBOW] += 0.4;
         }
@@ -185,7 +187,11 @@ fn no_motion_is_promised_for_an_offset_with_an_onset() {
     let is_it = |finding: &diagnosis::Confusable, rival: &diagnosis::Confusable| {
         (finding.effect, rival.effect) == ("torque_offset", "friction_asymmetry")
     };
-    assert!(is_confused(&diagnosis, "torque_offset", "friction_asymmetry"), "{:?}", support::sentences(&diagnosis));
+    assert!(
+        is_confused(&diagnosis, "torque_offset", "friction_asymmetry"),
+        "{:?}",
+        crate::support::sentences(&diagnosis)
+    );
     assert!(!next.separates.iter().any(|pair| is_it(&pair.finding, &pair.rival)));
     let pair = next.not_separated.iter().find(|pair| is_it(&pair.finding, &pair.rival));
     let pair = pair.expect("it is said");

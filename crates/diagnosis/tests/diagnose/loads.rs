@@ -1,13 +1,11 @@
 //! Recordings that were made with different loads at the tip.
 
-mod support;
-
+use crate::support::{
+    ELBOW, Motion, SHOULDER, baseline_friction, inputs, motion, named, recorded, regular, sentences, start, trio,
+};
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options, diagnose};
 use recording::RegularRecording;
-use support::{
-    ELBOW, Motion, SHOULDER, baseline_friction, inputs, motion, named, recorded, regular, sentences, start, trio,
-};
 
 /// The arm with `mass` (kg) at the tip.
 fn with_load(arm: &Arm, mass: f64) -> Arm {
@@ -161,7 +159,7 @@ fn a_change_of_the_last_link_is_one_body() {
             tensor: Matrix3::zeros(),
         });
         let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
-        let diagnosis = support::diagnosed(&arm, &robot, &friction, Vec::new());
+        let diagnosis = crate::support::diagnosed(&arm, &robot, &friction, Vec::new());
         let bodies = ["payload", "link_inertial_error", "inertial_parameters"];
         let named = named(&diagnosis);
         let of_bodies = named.iter().filter(|(effect, _)| bodies.contains(effect)).count();

@@ -1,13 +1,11 @@
 //! What changed since the recordings from before.
 
-mod support;
-
+use crate::support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, regular, sentences, start, trio};
 use arm::{Arm, Inertia, Workspace};
 use diagnosis::{Change, Diagnosis, Finding, Input, Options, diagnose};
 use effects::arm::PAYLOAD;
 use effects::friction::COULOMB_FRICTION;
 use recording::RegularRecording;
-use support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, regular, sentences, start, trio};
 
 /// The diagnosis of four recordings, two of which are from before. The last is held out.
 fn diagnosed(recordings: &[RegularRecording]) -> Diagnosis {
@@ -23,7 +21,7 @@ fn diagnosed(recordings: &[RegularRecording]) -> Diagnosis {
 
 /// The diagnosis of recordings with the effects `injected`.
 fn with(injected: Injected<'_>) -> Diagnosis {
-    let recorded = |variant| regular(&support::recorded(&trio(), variant, 16.0, injected));
+    let recorded = |variant| regular(&crate::support::recorded(&trio(), variant, 16.0, injected));
     diagnosed(&(0..4).map(recorded).collect::<Vec<_>>())
 }
 
@@ -107,7 +105,7 @@ fn a_torque_constant_that_changed_a_little_is_found() {
             tau[SHOULDER] *= 1.04;
         }
     };
-    let recorded = |variant| regular(&support::recorded(&robot, variant, 16.0, &injected));
+    let recorded = |variant| regular(&crate::support::recorded(&robot, variant, 16.0, &injected));
     let diagnosis = diagnosed(&(0..4).map(recorded).collect::<Vec<_>>());
     let changes = changes(&diagnosis);
     let [(finding, effect, joint, change)] = &changes[..] else {
@@ -228,7 +226,7 @@ fn changed_load(load: &Inertia, factors: [f64; 3], pause: f64, is_loaded: impl F
         }
     };
     let recording = |variant: usize| {
-        let mut recording = support::recorded(&trio(), variant, 16.0, &injected);
+        let mut recording = crate::support::recorded(&trio(), variant, 16.0, &injected);
         let second_half = recording.time.len() / 2;
         recording.time.iter_mut().skip(second_half).for_each(|time| *time += pause);
         regular(&recording)
@@ -274,7 +272,7 @@ fn friction_of_another_form_remains() {
     let on_elbow: Vec<_> =
         changes(&diagnosis).into_iter().map(|(_, effect, joint, change)| (effect, joint, change)).collect();
     assert_eq!(on_elbow, [("coulomb_friction", Some("elbow"), Change::Reduced)], "{:?}", sentences(&diagnosis));
-    let today = support::effects_on(&diagnosis, "elbow");
+    let today = crate::support::effects_on(&diagnosis, "elbow");
     assert!(today.contains(&"load_dependent_friction"), "{today:?}");
 }
 
@@ -289,7 +287,7 @@ fn the_friction_of_another_day_is_no_change() {
             tau.iter_mut().zip(friction).for_each(|(tau, friction)| *tau += today * friction);
         };
         let recordings: Vec<RegularRecording> =
-            [1, 2, 3].map(|variant| regular(&support::recorded(&trio(), variant, 16.0, &machine))).into();
+            [1, 2, 3].map(|variant| regular(&crate::support::recorded(&trio(), variant, 16.0, &machine))).into();
         let input = |(number, recording)| Input {
             name: ["a", "b", "c"][number],
             recording,

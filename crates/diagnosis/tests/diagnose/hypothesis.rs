@@ -1,9 +1,7 @@
 //! Requested effects are fitted as they are, right ones well and wrong ones badly, and no other effect is named.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, SHOULDER, diagnosed_with, trio};
 use diagnosis::{Diagnosis, DiagnosisError, Options, Wanted};
-use support::{ELBOW, Motion, SHOULDER, diagnosed_with, trio};
 
 /// Friction on the shoulder, a stiction curve on the elbow, and a ripple there.
 fn injected(motion: &mut Motion, tau: &mut [f64]) {

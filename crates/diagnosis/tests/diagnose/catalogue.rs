@@ -1,14 +1,12 @@
 //! Each effect of the catalogue, injected alone beside small friction, is named on its joint with its size, and no other
 //! effect is named.
 
-mod support;
-
-use arm::{Arm, Vector3};
-use diagnosis::{Diagnosis, Verdict};
-use support::{
+use crate::support::{
     ELBOW, Injected, Motion, SHOULDER, baseline_friction, delayed_on, diagnosed, exports_what_it_reports, sentences,
     trio,
 };
+use arm::{Arm, Vector3};
+use diagnosis::{Diagnosis, Verdict};
 
 /// Checks that `effect` on `joint` is the only finding beside plain friction, with parameters within the relative
 /// `tolerance` of the truth.

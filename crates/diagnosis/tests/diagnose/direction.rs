@@ -1,11 +1,9 @@
 //! Constant torques of a sensor, and friction that depends on the direction: they differ where friction differs between recordings.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, effects_on, exports_what_it_reports, inputs, recorded, regular, sentences, trio};
 use diagnosis::{Diagnosis, Finding, Options, diagnose};
 use effects::Effect;
 use recording::RegularRecording;
-use support::{ELBOW, Motion, effects_on, exports_what_it_reports, inputs, recorded, regular, sentences, trio};
 
 /// The diagnosis of four recordings of 16 s, the third held out, with friction of `warmth` times its level in each. On the elbow, the
 /// friction forwards exceeds that backwards by twice `half`, and the sensor has an `offset` (N m).

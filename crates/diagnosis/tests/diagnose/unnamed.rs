@@ -1,15 +1,13 @@
 //! A residual without findings is located, and is a mismatch only beyond the limits of an explained one.
 
-mod support;
-
+use crate::support::{
+    ELBOW, Motion, SHOULDER, TRIO, TURN, baseline_friction, diagnosed, effects_on, inputs, named, recorded, regular,
+    sentences, start, trio,
+};
 use arm::{Arm, Vector3, Workspace};
 use diagnosis::{Axis, Options, Report, Verdict, diagnose};
 use effects::Regressor;
 use nalgebra::Matrix6xX;
-use support::{
-    ELBOW, Motion, SHOULDER, TRIO, TURN, baseline_friction, diagnosed, effects_on, inputs, named, recorded, regular,
-    sentences, start, trio,
-};
 
 /// Torque constants that are wrong on all joints, each by another part, are reported although no finding names them.
 #[test]

@@ -1,10 +1,8 @@
 //! Gaps in the gear of a joint about the vertical, on which gravity does not act, and delays.
 
-mod support;
-
+use crate::support::gap::{Ends, with_ends, with_gap};
+use crate::support::{baseline_friction, diagnosed, effects_on, sentences, trio};
 use diagnosis::{Diagnosis, NotObservable};
-use support::gap::{Ends, with_ends, with_gap};
-use support::{baseline_friction, diagnosed, effects_on, sentences, trio};
 
 /// The diagnosis of a gap on a URDF whose links are wrong by `wrong`, and its size found over the true one.
 fn found(halfgap: f64, wrong: f64) -> (Diagnosis, f64) {

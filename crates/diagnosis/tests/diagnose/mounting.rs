@@ -1,12 +1,10 @@
 //! A base on a slope, on a wall or on the ceiling, a tool that is not mounted, and channels without torque.
 
-mod support;
-
+use crate::support::{Motion, TRIO, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
 use arm::{Arm, Vector3};
 use diagnosis::{Diagnosis, Options, diagnose};
 use effects::Effect;
 use effects::friction::COULOMB_FRICTION;
-use support::{Motion, TRIO, baseline_friction, diagnosed, inputs, named, recorded, regular, sentences, trio};
 
 /// The diagnosis of the trio's arm on a base turned by an angle (°) about an axis.
 fn mounted(degrees: f64) -> Diagnosis {
@@ -60,7 +58,7 @@ fn a_tool_that_is_drawn_and_not_mounted_is_named_beside_a_wrong_link() {
 /// Beside links that are all wrong by about 5 %, the last link keeps nothing of the tool, and is not called a lighter link.
 #[test]
 fn a_tool_that_is_not_mounted_is_named_beside_links_that_are_all_wrong() {
-    const PUMA: &str = include_str!("../../../assets/puma560.urdf");
+    const PUMA: &str = include_str!("../../../../assets/puma560.urdf");
     let tool = arm::Inertia { mass: 0.9, com: Vector3::new(0.01, 0.02, 0.08), tensor: arm::Matrix3::identity() * 2e-3 };
     let shifts = [
         [1.06, 3.0, -4.0],

@@ -1,13 +1,11 @@
 //! Known effects: what they hold at rest, what a torque constant multiplies, and what is less than known.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, effects_on, named, sentences, trio};
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Verdict};
 use effects::Effect;
 use effects::friction::{COULOMB_FRICTION, VISCOUS_FRICTION};
 use effects::joint::SPRING;
-use support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed, effects_on, named, sentences, trio};
 
 /// The friction of [`baseline_friction`], and a spring on the shoulder.
 fn known() -> Vec<Effect> {
@@ -31,7 +29,7 @@ fn with_spring(motion: &Motion, tau: &mut [f64]) {
 fn known_friction_holds_a_joint_at_rest() {
     let machine = |motion: &mut Motion, tau: &mut [f64]| {
         if (4.0..7.0).contains(&motion.time) {
-            let still = support::motion(3, 4.0, 0).q[SHOULDER];
+            let still = crate::support::motion(3, 4.0, 0).q[SHOULDER];
             (motion.q[SHOULDER], motion.qd[SHOULDER], motion.qdd[SHOULDER]) = (still, 0.0, 0.0);
             let arm = trio();
             arm.inverse_dynamics(&mut Workspace::new(&arm), &motion.q, &motion.qd, &motion.qdd, tau);

@@ -1,17 +1,15 @@
 //! Friction and a rotor inertia on one joint: the exported effects are the fitted ones, and with them as known effects
 //! nothing is found.
 
-mod support;
-
+use crate::support::{
+    ELBOW, Injected, Motion, SHOULDER, delayed_on, exports_what_it_reports, inputs, named, recorded, regular,
+    sentences, start, trio,
+};
 use arm::Arm;
 use diagnosis::{Diagnosis, Options, Verdict, diagnose};
 use effects::Effect;
 use effects::drive::ROTOR_INERTIA;
 use recording::RegularRecording;
-use support::{
-    ELBOW, Injected, Motion, SHOULDER, delayed_on, exports_what_it_reports, inputs, named, recorded, regular,
-    sentences, start, trio,
-};
 
 /// The rotor inertias of the true arm (kg m²).
 const ROTORS: [f64; 3] = [0.0, 0.9, 0.25];
@@ -124,7 +122,7 @@ fn thermal_drift() {
 /// The links behind the elbow need a hundredth of its torque, and its drive all the rest.
 #[test]
 fn a_delay_shows_in_the_torque_of_a_drive_that_the_urdf_does_not_contain() {
-    let diagnosis = support::diagnosed(&trio(), &trio(), &delayed_on(ELBOW, 0.009, 20.0), Vec::new());
+    let diagnosis = crate::support::diagnosed(&trio(), &trio(), &delayed_on(ELBOW, 0.009, 20.0), Vec::new());
     assert_eq!(
         named(&diagnosis),
         [("rotor_inertia", Some("elbow")), ("actuation_delay", Some("elbow"))],

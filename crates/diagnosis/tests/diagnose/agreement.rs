@@ -1,11 +1,9 @@
 //! The evidence for a way to read recordings.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, SHOULDER, TRIO, baseline_friction, inputs, recorded, regular, trio};
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Agreement, Input, agreement};
 use recording::RegularRecording;
-use support::{ELBOW, Motion, SHOULDER, TRIO, baseline_friction, inputs, recorded, regular, trio};
 
 /// A recording of the arm with dry and viscous friction.
 fn with_friction() -> RegularRecording {

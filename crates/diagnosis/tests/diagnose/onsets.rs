@@ -1,10 +1,8 @@
 //! Effects with an onset within the recordings.
 
-mod support;
-
+use crate::support::{ELBOW, Motion, baseline_friction, diagnosed, diagnosed_with, named, sentences, trio};
 use arm::Vector3;
 use diagnosis::{Options, Wanted};
-use support::{ELBOW, Motion, baseline_friction, diagnosed, diagnosed_with, named, sentences, trio};
 
 /// Effects that begin within the recordings are named with their onset.
 #[test]

@@ -1,10 +1,8 @@
 //! Small constant torques on all joints, as real torque sensors have them.
 
-mod support;
-
+use crate::support::{Motion, baseline_friction, inputs, named, recorded, regular, sentences, trio};
 use diagnosis::{Diagnosis, Options, diagnose};
 use effects::Effect;
-use support::{Motion, baseline_friction, inputs, named, recorded, regular, sentences, trio};
 
 /// The diagnosis of four recordings of 16 s in which the joints have the constant torques `constants` (N m), the third held out.
 fn diagnosed(constants: [f64; 3], known: &[Effect]) -> Diagnosis {
