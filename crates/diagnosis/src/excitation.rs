@@ -152,8 +152,7 @@ pub fn excite(
             shrunk(arm, &allowed, &series, start, COARSE).map(|(start, _)| start)
         })
         .collect::<Result<_, _>>()?;
-    let best =
-        search::best(&criterion, starts, progress).map_err(|error| ExcitationError::Search(error.to_string()))?;
+    let best = search::best(&criterion, starts, progress).map_err(ExcitationError::Search)?;
     let (found, needed) = shrunk(arm, &allowed, &series, best, FINE)?;
     let reference = series.reference(&found);
     let measured = base.measure(arm, &reference, period);

@@ -34,6 +34,7 @@ mod climb;
 mod conditioning;
 mod data;
 mod dense;
+mod descent;
 mod error;
 mod evaluation;
 mod file;
@@ -53,6 +54,7 @@ mod wide;
 
 pub use conditioning::Conditioning;
 pub use data::{Hyperparameters, Lengths, TrainingSet};
+pub use descent::Descent;
 pub use error::GpError;
 pub use lagrangian::{
     JointType, LagrangianConditioning, LagrangianGp, LagrangianOptions, LagrangianPrior, LagrangianRange,

@@ -1,11 +1,8 @@
 //! The search for the best motion: L-BFGS from a few starts, with penalties that are increased.
 
-use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use argmin::core::{CostFunction, Error, Executor, Gradient};
-use argmin::solver::linesearch::MoreThuenteLineSearch;
-use argmin::solver::quasinewton::LBFGS;
+use gp::Descent;
 
 use super::criterion::Criterion;
 
@@ -28,7 +25,7 @@ pub fn best(
     criterion: &Criterion<'_>,
     starts: Vec<Vec<f64>>,
     progress: &(dyn Fn(f64) + Sync),
-) -> Result<Vec<f64>, Error> {
+) -> Result<Vec<f64>, String> {
     let iterations = |list: &[(f64, u64)]| list.iter().map(|(_, count)| *count).sum::<u64>() as f64;
     let total = EVALUATIONS * (starts.len() as f64 * iterations(&EACH) + iterations(&BEST));
     let done = AtomicU64::new(0);
@@ -49,7 +46,7 @@ pub fn best(
         }
         done.store((EVALUATIONS * (number + 1) as f64 * iterations(&EACH)) as u64, Ordering::Relaxed);
     }
-    let (_, mut at) = found.ok_or_else(|| Error::msg(format!("none of {count} starts led to a motion")))?;
+    let (_, mut at) = found.ok_or_else(|| format!("none of {count} starts led to a motion"))?;
     for (hardness, most) in BEST {
         (_, at) = descend(&look, at, hardness, most)?;
     }
@@ -60,97 +57,18 @@ pub fn best(
 type Look<'a> = dyn Fn(&[f64], f64) -> (f64, Vec<f64>) + 'a;
 
 /// The lowest value on the descent from `start`, and its coefficients.
-fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result<(f64, Vec<f64>), Error> {
-    let problem = Problem { look, hardness, seen: RefCell::default() };
-    problem.look(&start)?;
-    let line_search = MoreThuenteLineSearch::new().with_width_tolerance(0.02)?;
-    let solver = LBFGS::new(line_search, MEMORY).with_tolerance_grad(1e-6)?.with_tolerance_cost(1e-9)?;
-    let seen = &problem.seen;
-    let run = Executor::new(Borrowed(&problem), solver)
-        .configure(|state| state.param(start.clone()).max_iters(most))
-        .ctrlc(false)
-        .timer(false)
-        .run();
-    // An error is the end of the line search; the best point so far is the result.
-    drop(run);
-    let seen = seen.borrow();
-    Ok((seen.best, seen.best_at.clone()))
-}
-
-struct Problem<'a> {
-    look: &'a Look<'a>,
-    hardness: f64,
-    seen: RefCell<Seen>,
-}
-
-/// The last evaluated point (argmin asks for value and gradient separately), and the best one.
-struct Seen {
-    last: Vec<f64>,
-    value: f64,
-    gradient: Vec<f64>,
-    best: f64,
-    best_at: Vec<f64>,
-    stalled: usize,
-}
-
-impl Default for Seen {
-    fn default() -> Self {
-        Self {
-            last: Vec::new(),
-            value: f64::NAN,
-            gradient: Vec::new(),
-            best: f64::INFINITY,
-            best_at: Vec::new(),
-            stalled: 0,
-        }
-    }
-}
-
-impl Problem<'_> {
-    /// Evaluates value and gradient at `at` and stores them in `seen`.
-    fn look(&self, at: &[f64]) -> Result<(), Error> {
-        let mut seen = self.seen.borrow_mut();
-        if seen.last == at {
-            return Ok(());
-        }
-        if seen.stalled >= PATIENCE {
-            return Err(Error::msg("no more to gain"));
-        }
-        let (value, gradient) = (self.look)(at, self.hardness);
-        if !value.is_finite() || gradient.iter().any(|slope| !slope.is_finite()) {
-            return Err(Error::msg("the criterion is not finite"));
-        }
-        seen.stalled = if value < seen.best - NO_GAIN { 0 } else { seen.stalled + 1 };
-        if value < seen.best {
-            seen.best = value;
-            seen.best_at = at.to_vec();
-        }
-        seen.last = at.to_vec();
-        seen.value = value;
-        seen.gradient = gradient;
-        Ok(())
-    }
-}
-
-/// The problem in the form that argmin's executor owns.
-struct Borrowed<'a, 'b>(&'a Problem<'b>);
-
-impl CostFunction for Borrowed<'_, '_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, at: &Vec<f64>) -> Result<f64, Error> {
-        self.0.look(at)?;
-        Ok(self.0.seen.borrow().value)
-    }
-}
-
-impl Gradient for Borrowed<'_, '_> {
-    type Param = Vec<f64>;
-    type Gradient = Vec<f64>;
-
-    fn gradient(&self, at: &Vec<f64>) -> Result<Vec<f64>, Error> {
-        self.0.look(at)?;
-        Ok(self.0.seen.borrow().gradient.clone())
-    }
+fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result<(f64, Vec<f64>), String> {
+    let descent = Descent::new(
+        PATIENCE,
+        |_| NO_GAIN,
+        |at| {
+            let (value, gradient) = look(at, hardness);
+            let is_finite = value.is_finite() && gradient.iter().all(|slope| slope.is_finite());
+            is_finite.then_some((value, gradient)).ok_or("the criterion is not finite")
+        },
+    );
+    descent.look(&start)?;
+    // The end of the line search is an error; the best point so far is the result.
+    descent.run(&start, MEMORY, 1.0, most)?;
+    Ok(descent.best().unwrap_or((f64::INFINITY, start)))
 }
