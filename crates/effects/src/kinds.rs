@@ -1,7 +1,5 @@
 //! Kinds of effects: those of the catalogue by name and in its order, then the unmodelled forms.
 
-use std::cmp::Ordering;
-use std::hash::{Hash, Hasher};
 use std::sync::LazyLock;
 
 use crate::spec::{Effect, Spec};
@@ -24,12 +22,9 @@ pub fn experiment_against(one: &str, other: &str) -> Option<&'static str> {
     of(one, other).or_else(|| of(other, one))
 }
 
-/// A kind of effect, named or unmodelled; kinds are ordered as in the catalogue.
-#[derive(Clone, Copy, Debug)]
-pub struct Kind {
-    index: usize,
-    spec: &'static Spec,
-}
+/// A kind of effect, named or unmodelled: its place in the catalogue, by which kinds are ordered. The unmodelled forms follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Kind(usize);
 
 impl Kind {
     /// A spec as a kind.
@@ -41,34 +36,29 @@ impl Kind {
         kind.expect("every kind is in CATALOGUE or in UNMODELLED")
     }
 
-    fn at(index: usize) -> Self {
-        let spec = CATALOGUE.get(index).unwrap_or_else(|| &UNMODELLED[index - CATALOGUE.len()]);
-        Self { index, spec }
-    }
-
     /// The kind with this name.
     pub fn named(name: &str) -> Option<Self> {
-        CATALOGUE.iter().position(|spec| spec.name == name).map(Self::at)
+        CATALOGUE.iter().position(|spec| spec.name == name).map(Self)
     }
 
     /// All kinds, those of the catalogue first.
     pub fn all() -> impl Iterator<Item = Self> {
-        (0..CATALOGUE.len() + UNMODELLED.len()).map(Self::at)
+        (0..CATALOGUE.len() + UNMODELLED.len()).map(Self)
     }
 
     /// Everything that is known of it.
     pub fn spec(self) -> &'static Spec {
-        self.spec
+        CATALOGUE.get(self.0).unwrap_or_else(|| &UNMODELLED[self.0 - CATALOGUE.len()])
     }
 
     /// The name in the catalogue; `None` for an unmodelled form.
     pub fn name(self) -> Option<&'static str> {
-        (self.index < CATALOGUE.len()).then(|| self.spec().name)
+        (self.0 < CATALOGUE.len()).then(|| self.spec().name)
     }
 
     /// Whether it is this kind.
     pub fn is(self, spec: &'static Spec) -> bool {
-        std::ptr::eq(self.spec, spec)
+        std::ptr::eq(self.spec(), spec)
     }
 }
 
@@ -76,31 +66,5 @@ impl Effect {
     /// Its kind.
     pub fn kind(&self) -> Kind {
         Kind::of(self.spec())
-    }
-}
-
-impl PartialEq for Kind {
-    fn eq(&self, other: &Self) -> bool {
-        self.index == other.index
-    }
-}
-
-impl Eq for Kind {}
-
-impl PartialOrd for Kind {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Kind {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.index.cmp(&other.index)
-    }
-}
-
-impl Hash for Kind {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.index.hash(state);
     }
 }
