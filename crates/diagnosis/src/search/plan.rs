@@ -80,10 +80,9 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         if selected.set.iter().all(is_named) {
             study.suggest(&selected);
         }
-        let products = study.training_products();
         let allowed = study.allowed();
         let before = selected.set.clone();
-        selected = study.problem(&products).choose(selected.set, &selected.fit.weights);
+        selected = study.chosen(selected.set, &selected.fit.weights);
         selected = study.grown(selected, &allowed);
         if selected.set == before {
             break;

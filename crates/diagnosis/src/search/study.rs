@@ -18,7 +18,7 @@ use crate::regression::strengths::Strengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::own_load::OwnLoad;
-use crate::search::problem::Problem;
+use crate::search::problem::{Problem, Selection};
 use crate::search::scope::Scope;
 use crate::thresholds::{LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, OF_PLACEHOLDERS, Thresholds};
 use crate::trace::Trace;
@@ -282,6 +282,11 @@ impl Study {
             candidates: &self.candidates,
             thresholds: &self.thresholds,
         }
+    }
+
+    /// Fits a set to the training recordings, starting with the weights of `near`.
+    pub fn chosen(&self, set: Vec<usize>, near: &[f64]) -> Selection {
+        self.problem(&self.training_products()).choose(set, near)
     }
 
     /// The terms of a candidate.

@@ -125,16 +125,14 @@ fn named_alone(study: &mut Study, selected: Selection) -> Selection {
     if study.strengths == before {
         return selected;
     }
-    let products = study.training_products();
-    study.problem(&products).choose(selected.set, &selected.fit.weights)
+    study.chosen(selected.set, &selected.fit.weights)
 }
 
 fn relinearise_once(study: &mut Study, judged: &mut Judged, as_given: bool) {
     let kept = study.linearise_for_final_fit(&judged.named.fit, &judged.candidates());
     let named = judged.named.set.len();
     torque_constants::keep_named_ones(study, &kept[..named]);
-    let products = study.training_products();
-    let refitted = study.problem(&products).choose(kept[..named].to_vec(), &judged.named.fit.weights);
+    let refitted = study.chosen(kept[..named].to_vec(), &judged.named.fit.weights);
     judged.named = if as_given {
         refitted
     } else {

@@ -70,8 +70,7 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         let formed_anew = study.relinearise(&selected.fit, &selected.set);
         let is_done = formed_anew.is_none();
         let set = formed_anew.unwrap_or_else(|| selected.set.clone());
-        let products = study.training_products();
-        selected = study.problem(&products).choose(set, &selected.fit.weights);
+        selected = study.chosen(set, &selected.fit.weights);
         if is_done {
             break;
         }

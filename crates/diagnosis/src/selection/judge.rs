@@ -262,10 +262,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     let is_named = |member: &Member| hypothesis(member).name().is_some();
     // Every joint has friction, but not friction that changed.
     let is_baseline = |member: &Member| hypothesis(member).spec().is_baseline && study.always_acts(member.candidate);
-    let is_changed_friction = |member: &Member| {
-        let spec = hypothesis(member).spec();
-        spec.is_baseline && spec.is_friction && !is_baseline(member)
-    };
+    let is_changed_friction = |member: &Member| hypothesis(member).is_plain_friction() && !is_baseline(member);
     // On each joint, the largest unmodelled form and the largest effect that is not a baseline effect.
     let dof = study.data.motions.dof;
     let largest = |wanted: &dyn Fn(&Member) -> bool, joint: usize| -> f64 {

@@ -109,8 +109,7 @@ impl Study {
     pub fn about_own_bodies(&mut self, mut selected: Selection) -> Selection {
         for _ in 0..MOST_BODIES {
             self.set_bodies(&selected.fit);
-            let products = self.training_products();
-            let next = self.problem(&products).choose(selected.set, &selected.fit.weights);
+            let next = self.chosen(selected.set, &selected.fit.weights);
             selected = self.with_best_strengths(next);
         }
         self.with_possible_bodies(selected)
@@ -125,8 +124,7 @@ impl Study {
         let mut bodies = self.prior.possible(&inertial_changes(&self.data, &self.table, &selected.fit));
         for _ in 0..MOST_BODY_STEPS {
             self.prior.set_bodies(&bodies);
-            let products = self.training_products();
-            selected = self.problem(&products).choose(selected.set, &selected.fit.weights);
+            selected = self.chosen(selected.set, &selected.fit.weights);
             let fitted = inertial_changes(&self.data, &self.table, &selected.fit);
             let (next, length) = self.prior.towards(&bodies, &fitted);
             if length < LAST_BODY_STEP * strongest {

@@ -44,11 +44,9 @@ impl Study {
             (self.strengths, self.prior) = before.clone();
         }
         // What was before, evaluated about its own arm again.
-        let products = self.training_products();
-        let fit = self.problem(&products).choose(kept.clone(), &selected.fit.weights).fit;
+        let fit = self.chosen(kept.clone(), &selected.fit.weights).fit;
         let (set, _) = self.about_both(&fit, &kept, &[]);
-        let products = self.training_products();
-        self.problem(&products).choose(set, &selected.fit.weights)
+        self.chosen(set, &selected.fit.weights)
     }
 
     /// `set` with a torque constant on each joint that changed, and what then gains; with the new indices of `kept`.
@@ -63,13 +61,11 @@ impl Study {
         let mut weights = weights.to_vec();
         // The constants multiply the friction of this fit, too.
         for _ in 0..2 {
-            let products = self.training_products();
-            let fit = self.problem(&products).choose(set.clone(), &weights).fit;
+            let fit = self.chosen(set.clone(), &weights).fit;
             (set, kept) = self.about_both(&fit, &set, &kept);
             weights = fit.weights;
         }
-        let products = self.training_products();
-        let next = self.problem(&products).choose(set, &weights);
+        let next = self.chosen(set, &weights);
         let next = self.with_best_strengths(next);
         let allowed = self.allowed();
         (self.grown(next, &allowed), kept)

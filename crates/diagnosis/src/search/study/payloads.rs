@@ -87,8 +87,7 @@ impl Study {
         (self.strengths, self.prior) = (before.0.clone(), before.1.clone());
         self.refuse(payload);
         let rest = selected.set.iter().copied().filter(|c| !unfelt.contains(c)).collect();
-        let products = self.training_products();
-        let next = self.problem(&products).choose(rest, &selected.fit.weights);
+        let next = self.chosen(rest, &selected.fit.weights);
         self.note("the last joints hardly feel it, so that a link may carry it", &selected, &next);
         let next = self.with_best_strengths(next);
         let allowed = self.allowed();
