@@ -68,11 +68,6 @@ enum Reading {
 }
 
 impl Data {
-    /// The recordings that are fitted.
-    pub fn training(&self) -> Vec<usize> {
-        (0..self.fitted.len()).filter(|&recording| self.fitted[recording]).collect()
-    }
-
     /// Filters `inputs` and evaluates `arm`, with the known effects, along them.
     ///
     /// # Errors

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use effects::background::OWN_FRICTION;
-use effects::{Quantity, Term};
+use effects::Quantity;
 
-use crate::data::statistics::median;
 use crate::selection::FinalFit;
 use crate::thresholds::OTHER_FRICTION;
 
@@ -13,18 +11,10 @@ use crate::thresholds::OTHER_FRICTION;
 pub fn note(last: &FinalFit) -> Option<String> {
     let (study, fit) = (&last.study, &last.judged.named.fit);
     let mut differences = Vec::new();
-    let joints: BTreeSet<usize> = study.strengths.varied.iter().map(|varied| varied.joint).collect();
+    let joints: BTreeSet<usize> = study.strengths.varied.iter().map(|(joint, _)| *joint).collect();
     for joint in joints {
         let described = &study.data.arm.joints()[joint];
-        let own = |recording: usize| {
-            let term = Term::on(&OWN_FRICTION, joint).of(recording);
-            let column = study.table.terms.iter().position(|known| *known == term);
-            (recording, column.map_or(0.0, |column| fit.coefficient(column)))
-        };
-        let levels: Vec<(usize, f64)> = study.data.training().into_iter().map(own).collect();
-        let usual = median(levels.iter().map(|(_, level)| *level).collect());
-        for (recording, level) in levels {
-            let more = level - usual;
+        for (recording, more) in study.own_levels(fit, joint) {
             if more.abs() > OTHER_FRICTION * study.data.scales.torque[joint] {
                 let name = &study.data.motions.sources[recording].name;
                 let unit = Quantity::Torque.unit(described.kind);

@@ -207,7 +207,7 @@ impl Prior {
                     (false, false) => strengths.offset,
                 }
             }
-            term if term.is(&OWN_FRICTION) => strengths.own_friction(term.joint, term.of[0]),
+            term if term.is(&OWN_FRICTION) => strengths.own_friction(term.joint, term.of[1]),
             _ => strengths.friction,
         };
         let columns: Vec<usize> = (0..self.terms.len()).filter(|&column| strength(column) > 0.0).collect();

@@ -139,9 +139,9 @@ impl Products {
         self.background.as_ref().is_some_and(|background| !background.is_lag_alone)
     }
 
-    /// The strength of a joint's friction that other recordings than the fitted ones have of their own, in the background.
-    pub fn own_friction(&self, joint: usize) -> f64 {
-        self.background.as_ref().map_or(0.0, |background| background.strengths.own_friction(Some(joint), usize::MAX))
+    /// The strength of friction that other recordings than the fitted ones have of their own, in the background.
+    pub fn own_friction(&self) -> f64 {
+        self.background.as_ref().map_or(0.0, |background| background.strengths.friction)
     }
 
     /// Independent pieces of evidence per row of a joint.

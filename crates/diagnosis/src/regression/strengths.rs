@@ -17,8 +17,8 @@ pub struct Strengths {
     pub least: Vec<f64>,
     /// The form of each joint's friction, relative to its prior.
     pub friction: f64,
-    /// Friction that is much different in some recordings.
-    pub varied: Vec<Varied>,
+    /// The joints and recordings in which friction is much different.
+    pub varied: Vec<(usize, usize)>,
     /// The constant torques of the joints, relative to their prior.
     pub offset: f64,
     /// The torque constants, relative to their prior.
@@ -37,14 +37,8 @@ pub struct Strengths {
     pub lag: bool,
 }
 
-/// The friction of a joint that is much different in one of the recordings, or in each (`None`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Varied {
-    /// The joint.
-    pub joint: usize,
-    /// The recording.
-    pub recording: Option<usize>,
-}
+/// The largest number of joints and recordings whose friction is made much different at once.
+const MOST_DIFFERENT: usize = 3;
 
 /// A part of the background that [`Strengths::weaker`] reduces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +63,8 @@ impl fmt::Display for Strengths {
             self.offset,
             self.gain
         )?;
-        for Varied { joint, recording } in &self.varied {
-            let recording = recording.map_or("each recording".to_owned(), |recording| format!("recording {recording}"));
-            write!(f, "; friction of joint {joint} in {recording}")?;
+        for (joint, recording) in &self.varied {
+            write!(f, "; friction of joint {joint} in recording {recording}")?;
         }
         if self.lag { write!(f, "; lag") } else { Ok(()) }
     }
@@ -108,9 +101,8 @@ impl Strengths {
 
     /// The strength of the friction of a joint that a recording has of its own.
     pub fn own_friction(&self, joint: Option<usize>, recording: usize) -> f64 {
-        let is_this =
-            |varied: &Varied| Some(varied.joint) == joint && varied.recording.is_none_or(|varied| varied == recording);
-        if self.varied.iter().any(is_this) { self.friction.max(VARIED_FRICTION) } else { self.friction }
+        let is_varied = joint.is_some_and(|joint| self.varied.contains(&(joint, recording)));
+        if is_varied { self.friction.max(VARIED_FRICTION) } else { self.friction }
     }
 
     /// Whether the centre of mass of some link is a placeholder.
@@ -205,28 +197,17 @@ impl Strengths {
         others.map(|offset| Self { offset, ..self.clone() }).collect()
     }
 
-    /// The strengths that differ from these in one link, or in the friction of one joint in some of these `recordings`.
-    pub fn in_one_place(&self, recordings: &[usize]) -> Vec<Self> {
-        let with = |varied: Vec<Varied>| Self { varied, ..self.clone() };
-        let without = |which: &dyn Fn(&Varied) -> bool| -> Vec<Varied> {
-            self.varied.iter().copied().filter(|varied| !which(varied)).collect()
-        };
-        let and = |mut list: Vec<Varied>, joint: usize, recording: Option<usize>| {
-            list.push(Varied { joint, recording });
-            list.sort_unstable();
-            list
-        };
+    /// The strengths that differ from these in one link, or in the friction of a joint in one recording. A few of the joints and recordings
+    /// `different`, the most different one first, must be able to stand for friction that differs everywhere.
+    pub fn in_one_place(&self, different: &[(usize, usize)]) -> Vec<Self> {
         let mut list = self.with_other_links();
-        list.extend(self.varied.iter().map(|one| with(without(&|other| other == one))));
-        for joint in 0..self.links.len() {
-            if !self.varied.iter().any(|varied| varied.joint == joint) {
-                list.push(with(and(self.varied.clone(), joint, None)));
-            } else if recordings.len() > 2 {
-                // Of two recordings, none is the usual one.
-                let others = without(&|varied| varied.joint == joint && varied.recording.is_none());
-                let free = recordings.iter().map(|&recording| (joint, Some(recording)));
-                let free = free.filter(|&(joint, recording)| !self.varied.contains(&Varied { joint, recording }));
-                list.extend(free.map(|(joint, recording)| with(and(others.clone(), joint, recording))));
+        let without = |one: &(usize, usize)| self.varied.iter().copied().filter(|other| other != one).collect();
+        list.extend(self.varied.iter().map(|one| Self { varied: without(one), ..self.clone() }));
+        for most in 1..=different.len().min(MOST_DIFFERENT) {
+            let mut varied = [&self.varied[..], &different[..most]].concat();
+            varied.sort_unstable();
+            for friction in FRICTION_STRENGTHS.into_iter().filter(|&friction| friction < self.friction) {
+                list.push(Self { friction, varied: varied.clone(), ..self.clone() });
             }
         }
         list

@@ -150,8 +150,8 @@ impl Problem<'_> {
     /// differ.
     pub fn held_out_rss(&self, held: &Products, candidate: usize, fit: &Fit) -> Vec<f64> {
         let rss = held.rss(self.table, &fit.columns, &fit.coefficients);
-        let differs = (0..rss.len()).any(|joint| self.products.own_friction(joint) > 0.0);
-        if !differs || !self.candidates[candidate].hypothesis.spec().is_form_of_friction() {
+        let scale = FRICTION_PRIOR * self.products.own_friction();
+        if scale == 0.0 || !self.candidates[candidate].hypothesis.spec().is_form_of_friction() {
             return rss;
         }
         let scales = &self.data.scales;
@@ -162,8 +162,7 @@ impl Problem<'_> {
         let own_friction = |joint: usize| {
             let is_own = |term: &Term| term.is(&OWN_FRICTION) && term.joint == Some(joint);
             self.table.terms.iter().any(is_own).then_some(())?;
-            let level = FRICTION_PRIOR * self.products.own_friction(joint) * scales.torque[joint];
-            (level > 0.0).then_some(())?;
+            let level = scale * scales.torque[joint];
             let slope = level / scales.speed[joint].max(1e-300);
             Some([(column(&SIGN, joint)?, level), (column(&VELOCITY, joint)?, slope)])
         };

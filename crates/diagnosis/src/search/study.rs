@@ -30,6 +30,7 @@ mod formed;
 mod friction_changes;
 mod links;
 mod notes;
+mod own_friction;
 mod payloads;
 mod strengths;
 

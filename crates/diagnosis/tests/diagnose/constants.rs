@@ -1,6 +1,6 @@
 //! Small constant torques on all joints, as real torque sensors have them.
 
-use crate::support::{Motion, baseline_friction, inputs, named, recorded, regular, sentences, trio};
+use crate::support::{Motion, SHOULDER, baseline_friction, inputs, named, recorded, regular, sentences, trio};
 use diagnosis::{Diagnosis, Options, diagnose};
 use effects::Effect;
 
@@ -77,4 +77,20 @@ fn exact_torques_need_no_constants() {
     let diagnosis = diagnosed([0.0; 3], &[]);
     assert!(diagnosis.report.constant_torques.is_empty());
     assert!(named(&diagnosis).is_empty(), "{:?}", sentences(&diagnosis));
+}
+
+/// The torque of one joint is in another unit, or on the other side of a gear.
+#[test]
+fn one_torque_in_another_unit_is_a_scale_of_any_size() {
+    for factor in [0.02, 8.0, 1000.0] {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            tau[SHOULDER] *= factor;
+        };
+        let diagnosis = crate::support::diagnosed(&trio(), &trio(), &injected, Vec::new());
+        assert_eq!(named(&diagnosis), [("torque_scale", Some("shoulder"))], "{factor}: {:?}", sentences(&diagnosis));
+        let mut findings = diagnosis.report.findings.iter();
+        let found = findings.find(|finding| finding.effect == "torque_scale").expect("it is named");
+        assert!((found.parameters["factor"].value / factor - 1.0).abs() < 0.03, "{:?}", found.parameters);
+    }
 }

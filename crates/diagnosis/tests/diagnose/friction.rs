@@ -1,7 +1,7 @@
 //! Friction curves of real drives: neither their form nor their change between recordings is named as another effect.
 
 use crate::support::{
-    ELBOW, Motion, baseline_friction, diagnosed, effects_on, recorded, regular, sentences, start, trio,
+    ELBOW, Motion, baseline_friction, diagnosed, effects_on, inputs, recorded, regular, sentences, start, trio,
 };
 use diagnosis::{Diagnosis, Input, Options, diagnose};
 use recording::RegularRecording;
@@ -203,4 +203,27 @@ fn the_control_is_measured_on_the_rows_near_reversals_too() {
     };
     let (without, with) = (identified(0.0), identified(3.0));
     assert!(with > 2.0 * without, "{without} {with}");
+}
+
+/// Friction of one joint that is much larger in one of the recordings: it is that of the others, which they determine, and so is the friction
+/// of the other joints.
+#[test]
+fn friction_of_one_recording_is_noted_and_leaves_the_others_alone() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        if (start(1)..start(2)).contains(&motion.clock) {
+            tau[ELBOW] += 0.9 * motion.qd[ELBOW].signum();
+        }
+    };
+    let recordings: Vec<_> = (0..4).map(|variant| regular(&recorded(&trio(), variant, 16.0, &injected))).collect();
+    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    for joint in ["turn", "shoulder", "elbow"] {
+        let mut findings = diagnosis.report.findings.iter();
+        let found = findings.find(|found| found.effect == "coulomb_friction" && found.joint.as_deref() == Some(joint));
+        let [low, high] = found.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))).parameters["level"].ci95;
+        assert!(low < 0.6 && 0.6 < high && high - low < 0.1, "{joint}: {low} to {high}");
+    }
+    let mut notes = diagnosis.remarks.iter().filter(|note| note.starts_with("dry friction is not the same"));
+    let note = notes.next().unwrap_or_else(|| panic!("{:?}", diagnosis.remarks));
+    assert!(note.contains("(elbow: +0.9") && note.contains(" in b)"), "{note}");
 }

@@ -185,3 +185,25 @@ fn a_push_on_a_joint_at_rest_is_noted() {
     let [note] = &notes(15.0)[..] else { panic!("one note is expected") };
     assert!(note.starts_with("b: elbow rests between 1006."), "{note}");
 }
+
+/// The load of the held-out recording, the last one on a common clock, is found there, and in its prediction.
+#[test]
+fn a_load_of_the_held_out_recording_alone_is_in_its_prediction() {
+    let recordings: Vec<RegularRecording> = (0..3)
+        .map(|variant| {
+            let robot = with_load(&trio(), if variant == 2 { 0.8 } else { 0.0 });
+            let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
+            regular(&recorded(&robot, variant, 16.0, &friction))
+        })
+        .collect();
+    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    assert_load(&diagnosis, &["c"], 0.8);
+    assert!(
+        named(&diagnosis).is_empty() && diagnosis.report.unexplained.is_empty(),
+        "{:?}",
+        diagnosis.report.unexplained
+    );
+    for (joint, fit) in &diagnosis.report.fit {
+        assert!(fit.held_out_nrmse_augmented.is_some_and(|error| error < 0.03), "{joint}: {fit:?}");
+    }
+}

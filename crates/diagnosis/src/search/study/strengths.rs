@@ -144,7 +144,7 @@ impl Study {
             self.note_tried(&selected, &std::mem::take(&mut growth.tried));
             let mut stronger = self.strengthened(&selected, self.strengths.neighbours());
             if grown.is_none() && stronger.is_none() {
-                let others = self.strengths.in_one_place(&self.data.training()).into_iter();
+                let others = self.in_one_place(&selected).into_iter();
                 let others = others.chain(self.strengths.in_one_link()).collect();
                 stronger = self.strengthened(&selected, others);
             }
@@ -235,9 +235,8 @@ impl Study {
 
     /// `selected` with the strengths of the background that the evidence prefers.
     pub fn with_best_strengths(&mut self, mut selected: Selection) -> Selection {
-        let training = self.data.training();
-        let in_one_place = |strengths: &Strengths| strengths.in_one_place(&training);
         for _ in 0..MOST_MOVES {
+            let in_one_place = |_: &Strengths| self.in_one_place(&selected);
             let kinds: [&dyn Fn(&Strengths) -> Vec<Strengths>; 5] = [
                 &Strengths::neighbours,
                 &in_one_place,
