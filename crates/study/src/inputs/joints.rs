@@ -21,7 +21,8 @@ pub(super) fn moving_grippers(recording: &Recording, arm: &Arm) -> Vec<(String, 
         (travel > LEAST_TRAVEL).then(|| {
             format!(
                 "moves by {travel:.2} rad, but is fixed at {} rad in the arm, because its name is that of a gripper's joint; if it is a \
-                 joint of the arm, give the link after it as --tip LINK",
+                 joint of the arm, give the link after it as --tip LINK, with --lock JOINT=POSITION for each joint before it that is not \
+                 recorded",
                 fixed.position
             )
         })

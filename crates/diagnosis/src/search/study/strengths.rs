@@ -236,15 +236,15 @@ impl Study {
     /// `selected` with the strengths of the background that the evidence prefers.
     pub fn with_best_strengths(&mut self, mut selected: Selection) -> Selection {
         for _ in 0..MOST_MOVES {
-            let in_one_place = |_: &Strengths| self.in_one_place(&selected);
-            let kinds: [&dyn Fn(&Strengths) -> Vec<Strengths>; 5] = [
-                &Strengths::neighbours,
-                &in_one_place,
-                &Strengths::in_one_link,
-                &Strengths::with_other_offsets,
-                &Strengths::finer,
+            let now = &self.strengths;
+            let kinds = [
+                now.neighbours(),
+                self.in_one_place(&selected),
+                now.in_one_link(),
+                now.with_other_offsets(),
+                now.finer(),
             ];
-            let next = kinds.into_iter().find_map(|others| self.strengthened(&selected, others(&self.strengths)));
+            let next = kinds.into_iter().find_map(|others| self.strengthened(&selected, others));
             match next {
                 Some((strengths, next)) => {
                     self.strengths = strengths;
