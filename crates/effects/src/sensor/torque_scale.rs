@@ -2,7 +2,7 @@
 
 use super::torque_offset::KNOWN_LOAD;
 use crate::laws::RIGID;
-use crate::{Against, Detectability, Effect, Parameter, Quantity, Range, Scaled, SetsIn, Spec, Term, Turn};
+use crate::{Against, Detectability, Effect, Fitted, Parameter, Quantity, Range, Scaled, SetsIn, Spec, Term, Turn};
 
 /// The measured torque is `factor` times the true one.
 pub static TORQUE_SCALE: Spec = Spec {
@@ -21,8 +21,7 @@ pub static TORQUE_SCALE: Spec = Spec {
     is_certain_in_form: true,
     may_be_inertial: true,
     may_be_hidden: true,
-    // A factor between 0.3 and 3. Source: first diagnosis. Beyond it, the torque is in another unit.
-    usual: Some([-0.7, 2.0]),
+    usual: Some(USUAL),
     // Unmodelled structure of the residual resembles a factor on the load. Of the seven that were named beside an unexplained residual of
     // their joint in about 1000 simulated cases of three engines, none was right; they were up to 5.0 times as large.
     least_beside_residual: Some(6.0),
@@ -36,7 +35,11 @@ pub static TORQUE_SCALE: Spec = Spec {
     not_testable_turn: 10,
     forms: |grounds| grounds.on_moving(Turn::Drive, |joint| vec![Term::on(&RIGID, joint)]),
     sets_in: Some(SetsIn { turn: 1, forms: |joint| vec![vec![Term::on(&RIGID, joint)]], looked_for_with: 1 }),
-    is_possible: |fitted| RELATIVE.contains(&fitted.value(0)),
+    is_possible: |fitted| {
+        let [least, most] = USUAL;
+        let relative = fitted.value(0);
+        (least..=most).contains(&relative) || RELATIVE.contains(&relative) && is_of_another_unit(fitted)
+    },
     is_certain: |effect, _, accuracy| is_beyond_tolerance(effect, accuracy),
     read: |effect, estimate| {
         let at = estimate.place(0)?;
@@ -60,6 +63,24 @@ const USUAL_DEVIATIONS: f64 = 1.5;
 
 /// The relative deviation from one that a torque scale may have: that of a torque in another unit, or on the other side of a gear.
 const RELATIVE: std::ops::Range<f64> = -0.9995..1999.0;
+
+/// The usual relative deviations from one. Beyond them, the torque is in another unit. Source: first diagnosis.
+const USUAL: [f64; 2] = [-0.7, 2.0];
+
+/// The least torque of the arm in another unit, as a multiple of what remains unexplained on the joint (root mean squares). Source: a simulated
+/// joint whose positions jump: a factor of 0.16 made the torque smaller that noise is differentiated to, and had 1.1.
+const LEAST_OF_ANOTHER_UNIT: f64 = 2.0;
+
+/// Whether the arm's torque in another unit explains most of the measured torque.
+fn is_of_another_unit(fitted: &dyn Fitted) -> bool {
+    let power = |signal: &[f64]| -> f64 {
+        let moving = signal.iter().zip(fitted.moving()).filter(|(_, moving)| **moving);
+        moving.map(|(value, _)| value * value).sum()
+    };
+    let factor = 1.0 + fitted.value(0);
+    let of_arm = |column: &[f64]| factor * factor * power(column);
+    fitted.column(0).is_some_and(|column| of_arm(column) > LEAST_OF_ANOTHER_UNIT.powi(2) * power(&fitted.residual()))
+}
 
 /// Whether the factor of `effect` deviates from one by more than torque constants of this `accuracy`, a relative standard deviation, do.
 pub(crate) fn is_beyond_tolerance(effect: &Effect, accuracy: f64) -> bool {

@@ -14,8 +14,9 @@ impl Study {
     pub(super) fn in_one_place(&self, selected: &Selection) -> Vec<Strengths> {
         let relative = |joint: usize| {
             let levels = self.own_levels(&selected.fit, joint);
-            // Of two recordings, none is the usual one.
-            let known = if levels.len() > 2 { levels } else { Vec::new() };
+            // Of two recordings, none is the usual one, and what changed since those from before is an effect.
+            let is_one_apart = levels.len() > 2 && self.data.motions.changed_at.is_none();
+            let known = if is_one_apart { levels } else { Vec::new() };
             known.into_iter().map(move |(recording, more)| {
                 let relative = more.abs() / self.data.scales.torque[joint].max(f64::MIN_POSITIVE);
                 (relative, (joint, recording))
