@@ -40,7 +40,13 @@ pub static TORQUE_SCALE: Spec = Spec {
         let relative = fitted.value(0);
         (least..=most).contains(&relative) || RELATIVE.contains(&relative) && is_of_another_unit(fitted)
     },
-    is_certain: |effect, _, accuracy| is_beyond_tolerance(effect, accuracy),
+    is_certain: |effect, interval, accuracy| {
+        let factor = effect.number("factor");
+        let is_usual = (USUAL[0]..=USUAL[1]).contains(&(factor - 1.0));
+        // A unit is a number that is known well, unless the arm's torque explains nothing.
+        let is_narrow = |[low, high]: [f64; 2]| high - low < factor;
+        is_beyond_tolerance(effect, accuracy) && (is_usual || interval("factor").is_none_or(is_narrow))
+    },
     read: |effect, estimate| {
         let at = estimate.place(0)?;
         let factor = estimate.note("factor", |draw| 1.0 + draw[at]);
