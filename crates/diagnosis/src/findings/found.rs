@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use effects::Acts;
 use effects::arm::{INERTIAL_PARAMETERS, INERTIAL_SCALE};
 use effects::laws::ACCELERATION;
-use effects::sensor::TORQUE_SCALE;
 
 use crate::data::Data;
 use crate::findings::other_friction::{possible_beside, widen};
@@ -66,9 +65,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
     let as_links = is_doubtful.then(|| (Hypothesis::of(&INERTIAL_PARAMETERS), None));
     // Factors on the masses stand for the torque constants of the other joints.
-    let is_constant = candidate.hypothesis.is(&TORQUE_SCALE) && study.always_acts(member.candidate);
-    let alike = torque_constants::alike(study, &last.judged.named);
-    let of_others = is_constant && candidate.joint.is_some_and(|joint| alike.contains(&joint));
+    let of_others = torque_constants::alike(study, &last.judged.named).contains(&member.candidate);
     let as_masses = of_others.then(|| (Hypothesis::of(&INERTIAL_SCALE), None));
     let change = change(last, member.candidate);
     let mut list = Vec::new();

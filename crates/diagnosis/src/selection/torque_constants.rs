@@ -82,21 +82,15 @@ pub fn note_on_unnamed(study: &Study, selected: &Selection) -> Option<String> {
     })
 }
 
-/// The joints whose named torque constants are alike, if these are half of the joints with a torque or more: the constants of the other
-/// joints, wrong by the inverse factor, and masses smaller by it explain the same torques.
+/// The members of `selected` that name torque constants, if they are alike and are those of half of the joints with a torque or more: the
+/// constants of the other joints, wrong by the inverse factor, and masses smaller by it explain the same torques.
 pub fn alike(study: &Study, selected: &Selection) -> Vec<usize> {
-    let factor = |&c: &usize| {
-        let joint = names(study, c)?;
-        Some((joint, 1.0 + selected.fit.coefficient(study.candidates[c].columns[0])))
-    };
-    let named: Vec<(usize, f64)> = selected.set.iter().filter_map(factor).collect();
+    let mut named = selected.set.clone();
+    named.retain(|&c| names(study, c).is_some());
+    let factor = |&c: &usize| 1.0 + selected.fit.coefficient(study.candidates[c].columns[0]);
+    let factors: Vec<f64> = named.iter().map(factor).collect();
     let of_all = study.data.scales.torque.iter().filter(|&&torque| torque > 0.0).count();
-    let factors = named.iter().map(|(_, factor)| *factor);
-    if are_of_others(&factors.collect::<Vec<f64>>(), of_all) {
-        named.into_iter().map(|(joint, _)| joint).collect()
-    } else {
-        Vec::new()
-    }
+    if are_of_others(&factors, of_all) { named } else { Vec::new() }
 }
 
 /// Whether these factors of the torque constants of some of `joints` joints may as well be the inverse ones of the others.
@@ -110,7 +104,8 @@ fn are_of_others(factors: &[f64], joints: usize) -> bool {
 /// A note on torque constants of half of the joints that are alike.
 pub fn note_on_alike(study: &Study, selected: &Selection) -> Option<String> {
     let alike = alike(study, selected);
-    let names: Vec<&str> = alike.iter().map(|&joint| &*study.data.arm.joints()[joint].name).collect();
+    let joints = alike.iter().filter_map(|&c| names(study, c));
+    let names: Vec<&str> = joints.map(|joint| &*study.data.arm.joints()[joint].name).collect();
     (!names.is_empty()).then(|| {
         format!(
             "the torque scales of {} agree. Those of the other joints, by the inverse factor, and other masses of all links would explain the \
