@@ -26,6 +26,8 @@ pub enum FindingKind {
     NoTorque,
     /// The stamps seem to be in milliseconds, or in another unit than seconds.
     TimeUnit,
+    /// The stamps seem to be a multiple of the true time.
+    ClockRate,
     /// Positions seem to be in degrees.
     Degrees,
     /// The recorded velocity is in another unit than the positions.
@@ -66,6 +68,7 @@ pub struct Finding {
 pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize, usize)]) -> Vec<Finding> {
     let time_unit = time_unit(regular.period, joints);
     let unit = time_unit.as_ref().map(|(unit, _)| *unit);
+    let clock_rate = if time_unit.is_none() { clock_rate(joints) } else { None };
     let mut findings = Vec::new();
     let mut add = |kind, joint: Option<&JointQuality>, text: String| {
         findings.push(Finding {
@@ -82,6 +85,13 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
     if let Some((_, text)) = &time_unit {
         add(FindingKind::TimeUnit, None, text.clone());
     }
+    if let Some(rate) = clock_rate {
+        let text = format!(
+            "the recorded velocities of all joints that move are {rate:.3} times their positions' slopes: the time stamps are probably \
+             {rate:.3} times the true times; correct the stamps, or give the velocities' unit if all of them have another one"
+        );
+        add(FindingKind::ClockRate, None, text);
+    }
     for joint in joints.iter().filter(|joint| joint.tau_range.0 == joint.tau_range.1) {
         let text = format!("the torque is {} throughout; was it logged? Check its column", joint.tau_range.0);
         add(FindingKind::NoTorque, Some(joint), text);
@@ -94,7 +104,7 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
                 joints[*other].joint
             );
             add(FindingKind::VelocitySwapped, Some(joint), text);
-        } else if time_unit.is_none() {
+        } else if time_unit.is_none() && clock_rate.is_none() {
             velocity(joint, &mut add);
         }
         let reach = joint.q_range.0.abs().max(joint.q_range.1.abs());
@@ -185,6 +195,26 @@ fn time_unit(period: f64, joints: &[JointQuality]) -> Option<(&'static str, Stri
          in {unit}; give unit = \"{unit}\" under [time] in a column map (--map)"
     );
     Some((unit, text))
+}
+
+/// The least number of joints whose velocities must agree on a wrong clock.
+const LEAST_OF_CLOCK: usize = 3;
+/// The relative difference of a clock's rate from one from which it is wrong: a filter changes the velocities by less.
+const WRONG_RATE: f64 = 0.03;
+/// The relative difference of the ratios of velocities to slopes that a common clock may have.
+const SAME_RATE: f64 = 0.01;
+
+/// The time of the stamps over the true time, if the recorded velocities of all joints that move agree on another one.
+fn clock_rate(joints: &[JointQuality]) -> Option<f64> {
+    let moving: Vec<&JointQuality> = joints.iter().filter(|joint| joint.moves).collect();
+    let is_clear = |joint: &&&JointQuality| joint.velocity_correlation.is_some_and(|correlation| correlation > 0.98);
+    let ratios: Vec<f64> = moving.iter().filter(is_clear).filter_map(|joint| joint.velocity_ratio).collect();
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let is_common = ratios.len() >= LEAST_OF_CLOCK
+        && ratios.len() == moving.len()
+        && ratios.iter().all(|ratio| (ratio / mean - 1.0).abs() < SAME_RATE);
+    // Larger factors are those of units.
+    (is_common && (mean - 1.0).abs() > WRONG_RATE && (0.2..5.0).contains(&mean)).then_some(mean)
 }
 
 fn near(value: f64, expected: f64) -> bool {

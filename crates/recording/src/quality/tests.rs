@@ -49,6 +49,16 @@ fn a_good_recording_is_measured() {
     assert_eq!(found, [FindingKind::VelocityLate]);
 }
 
+/// The positions and velocities of a robot whose logger's clock is slow agree on another rate.
+#[test]
+fn a_wrong_clock_is_told_apart_from_a_unit() {
+    let mut recording = good();
+    recording.time.iter_mut().for_each(|time| *time *= 0.9);
+    assert_eq!(kinds(&recording), [(FindingKind::ClockRate, None), LATE]);
+    let text = &quality(&recording).findings[0].text;
+    assert!(text.contains("the time stamps are probably 0.9"), "{text}");
+}
+
 #[test]
 fn flaws_are_found_on_their_joint() {
     let b = || Some("b".to_owned());
