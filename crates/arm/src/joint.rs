@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::inertia::{Inertia, Moments};
-use crate::pose::Pose;
+use crate::pose::{Pose, cross_matrix};
 use crate::real::Real;
 
 /// How a joint moves its link.
@@ -60,6 +60,32 @@ pub struct Joint {
 }
 
 impl Joint {
+    /// A revolute joint about `axis` at the origin of its parent, without limits and friction, that carries a link without mass.
+    pub(crate) fn without_link(name: &str, axis: Vector3<f64>) -> Self {
+        let inertia = Inertia { mass: 0.0, com: Vector3::zeros(), tensor: Matrix3::zeros() };
+        let cross = cross_matrix(&axis);
+        Self {
+            name: name.to_owned(),
+            link_name: name.to_owned(),
+            kind: JointKind::Revolute,
+            parent_from_joint: Pose::identity(),
+            axis,
+            limits: Limits {
+                lower: f64::NEG_INFINITY,
+                upper: f64::INFINITY,
+                velocity: f64::INFINITY,
+                effort: f64::INFINITY,
+            },
+            rotor_inertia: 0.0,
+            damping: 0.0,
+            friction: 0.0,
+            moments: Moments::of(&inertia),
+            inertia,
+            rotation_terms: [Matrix3::identity(), cross, cross * cross],
+            axis_in_parent: axis,
+        }
+    }
+
     /// Replaces the link's inertia.
     pub(crate) fn set_inertia(&mut self, inertia: Inertia) {
         self.inertia = inertia;

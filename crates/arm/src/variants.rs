@@ -3,6 +3,7 @@
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use crate::inertia::Inertia;
+use crate::joint::Joint;
 use crate::model::Arm;
 
 impl Arm {
@@ -22,6 +23,22 @@ impl Arm {
         let world_from_base = Rotation3::from_axis_angle(&axis, angle);
         self.gravity = world_from_base.inverse_transform_vector(&self.gravity);
         self
+    }
+
+    /// This arm on a base that turns about its x axis, and on that about its y axis: joints 0 and 1 of the result, whose links have no mass.
+    /// The shapes of the URDF are left out.
+    pub fn on_turning_base(&self) -> Self {
+        let turning = [Vector3::x(), Vector3::y()].map(|axis| Joint::without_link(&self.base_link, axis));
+        let frames = self.frames.iter().cloned().map(|mut frame| {
+            frame.link = Some(frame.link.map_or(1, |link| link + 2));
+            frame
+        });
+        Self {
+            frames: frames.collect(),
+            joints: turning.into_iter().chain(self.joints.iter().cloned()).collect(),
+            visuals: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// This arm with reflected rotor inertias (kg m² or kg), one per joint.
@@ -125,6 +142,19 @@ mod tests {
         // A rotation about the link's y axis is one about the tool's x axis.
         let about_origin = loaded.joints()[0].inertia.tensor_about_origin()[(1, 1)];
         assert!((about_origin - (0.1 + 2.0 * 0.25 + 0.01 + 3.0 * 0.64)).abs() < 1e-12);
+    }
+
+    /// A joint of the base that is held at an angle is a turned base, and its torque is that of the arm's weight about it.
+    #[test]
+    fn a_turning_base_holds_the_arm() {
+        let arm = Arm::from_urdf_text(ARM, "a.urdf").expect("it is an arm");
+        let turning = arm.on_turning_base();
+        let mut tau = [0.0; 3];
+        turning.gravity_torque(&mut Workspace::new(&turning), &[0.2, 0.3, 0.0], &mut tau);
+        // The joint of the base turns about the y axis after the one about the x axis, and the arm's joint about the same axis.
+        assert!((tau[1] - tau[2]).abs() < 1e-12);
+        let turned = arm.with_turned_base(Vector3::x(), 0.2).with_turned_base(Vector3::y(), 0.3);
+        assert!((tau[2] - holding(&turned)).abs() < 1e-12, "{} {}", tau[2], holding(&turned));
     }
 
     #[test]

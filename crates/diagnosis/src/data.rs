@@ -22,6 +22,7 @@ pub mod motion;
 pub mod noise;
 pub mod rigid;
 pub mod signal;
+mod turning_base;
 pub mod used;
 
 /// What is known before any fit: the filtered recordings, and the model along them.

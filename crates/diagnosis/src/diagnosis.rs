@@ -52,6 +52,7 @@ impl Diagnosis {
             fit: BTreeMap::new(),
             changed: None,
             different_load: None,
+            held_out_friction: Vec::new(),
             inertials: BTreeMap::new(),
             constant_torques: BTreeMap::new(),
             rollout: BTreeMap::new(),

@@ -6,6 +6,7 @@ pub mod conclusion;
 pub mod dual_sensor;
 pub mod found;
 mod gaps;
+mod held_out_friction;
 pub mod inertials;
 pub mod locate;
 pub mod observability;

@@ -11,6 +11,7 @@ mod change;
 mod dependence;
 mod different_load;
 mod doubt;
+mod held_out_friction;
 mod joint_fit;
 mod next_experiment;
 mod not_diagnosed;
@@ -22,6 +23,7 @@ pub use change::Change;
 pub use dependence::{Axis, Dependence};
 pub use different_load::DifferentLoad;
 pub use doubt::Doubt;
+pub use held_out_friction::HeldOutFriction;
 pub use joint_fit::JointFit;
 pub use next_experiment::{JointLimits, NextExperiment, NotSeparated, Obstacle, Separation, Shows};
 pub use not_diagnosed::NotDiagnosed;
@@ -85,6 +87,9 @@ pub struct Report {
     /// The load at the tip that only some of the recordings have, if there is one. No model of one arm holds for all of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub different_load: Option<DifferentLoad>,
+    /// The joints whose friction in a held-out recording is a multiple of that in the training recordings; empty if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub held_out_friction: Vec<HeldOutFriction>,
     /// The estimates of the links' inertial parameters, by the joint before the link; empty if the links do not differ from the
     /// URDF's.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

@@ -20,6 +20,7 @@ pub mod coupling;
 pub mod direction;
 pub mod final_fit;
 pub mod gain;
+pub mod held_out_friction;
 pub mod hypothesis;
 pub mod identified;
 pub mod judge;

@@ -1,27 +1,44 @@
-//! The link behind a compliant joint: the torques that its motion relative to the drive adds.
+//! The links behind a compliant joint or on a compliant base: the torques that their motion relative to the drive or the ground adds.
 
 use crate::signals::{Rigid, Signals};
 
-/// The motion δ (link minus drive) of the link behind a compliant joint, tick by tick.
+/// The place of a compliance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compliant {
+    /// Between a joint's drive and its link.
+    Joint(usize),
+    /// Between the ground and the base, about the base's x axis (0) or y axis (1).
+    Base(usize),
+}
+
+/// The motion δ (link minus drive, or base minus ground) of the links behind a compliance, tick by tick.
 #[derive(Clone, Debug)]
 pub struct LinkSide {
-    at: usize,
+    at: Compliant,
     /// δ, δ̇, δ̈ (rad or m, and so on).
     ticks: Vec<[f64; 3]>,
 }
 
 impl LinkSide {
-    /// The link of joint `at` with a motion δ from `sprung` or `gap`.
-    pub fn new(at: usize, ticks: Vec<[f64; 3]>) -> Self {
+    /// The links behind the compliance `at` with a motion δ from `sprung` or `gap`.
+    pub fn new(at: Compliant, ticks: Vec<[f64; 3]>) -> Self {
         Self { at, ticks }
     }
 
     /// The torque that it adds on `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ. The rotor is before the compliance and does not move
-    /// with δ.
+    /// with δ. A base turns slowly, so that its velocity adds no torque.
     pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
+        let at = match self.at {
+            Compliant::Joint(at) => at,
+            Compliant::Base(axis) => {
+                let (mass, slope) = (&rigid.base.coupling[joint][axis], &rigid.tilt[joint][axis]);
+                let ticks = self.ticks.iter().enumerate();
+                return ticks.map(|(k, [delta, _, acceleration])| mass[k] * acceleration + slope[k] * delta).collect();
+            }
+        };
         let (mass, drag, slope) =
-            (&rigid.mass[joint][self.at], &rigid.by_velocity[joint][self.at], &rigid.by_position[joint][self.at]);
-        let rotor = if joint == self.at { rigid.rotor(joint) } else { 0.0 };
+            (&rigid.mass[joint][at], &rigid.by_velocity[joint][at], &rigid.by_position[joint][at]);
+        let rotor = if joint == at { rigid.rotor(joint) } else { 0.0 };
         self.ticks
             .iter()
             .enumerate()
@@ -32,11 +49,24 @@ impl LinkSide {
     }
 }
 
+/// What moves the links behind a compliance, at each tick.
+struct Driven<M, T, D, S> {
+    /// The time between ticks (s).
+    period: f64,
+    ticks: usize,
+    /// M, without the rotor (kg m² or kg).
+    mass: M,
+    /// τ, without the torque of the rotor (N m or N).
+    tau: T,
+    /// ∂τ/∂q̇.
+    drag: D,
+    /// ∂τ/∂q.
+    slope: S,
+}
+
 /// δ behind a spring at joint `at`, in a gap of ± `halfgap` (none: zero) in which the link moves freely:
 /// M δ̈ + (D + ∂τ/∂q̇) δ̇ + ∂τ/∂q δ + K (δ ∓ halfgap) = −τ, driven by the drive's measured motion, with M and τ of the links
 /// alone, without the rotor. `damping` gives D for M.
-///
-/// Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static deflection.
 pub fn sprung(
     at: usize,
     halfgap: f64,
@@ -44,38 +74,72 @@ pub fn sprung(
     damping: impl Fn(f64) -> f64,
     motion: &Signals<'_>,
 ) -> Vec<[f64; 3]> {
-    let (h, rigid) = (motion.period, motion.rigid);
+    let rigid = motion.rigid;
     let (drag, slope) = (&rigid.by_velocity[at][at], &rigid.by_position[at][at]);
-    let mass = |k: usize| rigid.mass[at][at][k] - rigid.rotor(at);
-    let tau = |k: usize| motion.load(at, k);
-    let ticks = motion.ticks();
-    let mut out = Vec::with_capacity(ticks);
-    // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
-    let mut delta = -halfgap.copysign(tau(0)) - tau(0) / (stiffness + slope[0]);
-    let (mut speed, mut acceleration) = (0.0, 0.0);
-    for k in 0..ticks {
-        if k > 0 {
-            let place: f64 = delta + h * speed + 0.25 * h * h * acceleration;
-            let pace = speed + 0.5 * h * acceleration;
-            let solve = |damping: f64, spring: f64, rest: f64| {
-                let (d, s) = (drag[k] + damping, slope[k] + spring);
-                -(tau(k) + d * pace + s * place - spring * rest) / (mass(k) + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
-            };
-            let against = |end: f64| solve(damping(mass(k)), stiffness, end);
-            // The contact force acts on the side of the gap where the link is.
-            acceleration = if halfgap == 0.0 {
-                against(0.0)
-            } else {
-                let free = solve(0.0, 0.0, 0.0);
-                let end = (place + 0.25 * h * h * free).clamp(-halfgap, halfgap);
-                if end.abs() < halfgap { free } else { against(end) }
-            };
-            delta = place + 0.25 * h * h * acceleration;
-            speed = pace + 0.5 * h * acceleration;
+    let driven = Driven {
+        period: motion.period,
+        ticks: motion.ticks(),
+        mass: |k: usize| rigid.mass[at][at][k] - rigid.rotor(at),
+        tau: |k: usize| motion.load(at, k),
+        drag: |k: usize| drag[k],
+        slope: |k: usize| slope[k],
+    };
+    driven.sprung(halfgap, stiffness, damping)
+}
+
+/// δ of a base on a spring and a damper about its x axis (0) or y axis (1): I δ̈ + D δ̇ + K δ = −τ, with the torque τ that holds the base.
+pub fn swaying(axis: usize, stiffness: f64, damping: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
+    let base = motion.rigid.base;
+    let driven = Driven {
+        period: motion.period,
+        ticks: motion.ticks(),
+        mass: |k: usize| base.inertia[axis][k],
+        tau: |k: usize| base.torque[axis][k],
+        drag: |_| 0.0,
+        slope: |_| 0.0,
+    };
+    driven.sprung(0.0, stiffness, |_| damping)
+}
+
+impl<M, T, D, S> Driven<M, T, D, S>
+where
+    M: Fn(usize) -> f64,
+    T: Fn(usize) -> f64,
+    D: Fn(usize) -> f64,
+    S: Fn(usize) -> f64,
+{
+    /// See [`sprung`]. Integrated by the trapezoidal rule (Newmark, β = 1/4), from the quasi-static deflection.
+    fn sprung(&self, halfgap: f64, stiffness: f64, damping: impl Fn(f64) -> f64) -> Vec<[f64; 3]> {
+        let Self { period: h, ticks, mass, tau, drag, slope } = self;
+        let mut out = Vec::with_capacity(*ticks);
+        // Positive torque: the drive pushes the link in the positive direction, so the link lags behind.
+        let mut delta = -halfgap.copysign(tau(0)) - tau(0) / (stiffness + slope(0));
+        let (mut speed, mut acceleration) = (0.0, 0.0);
+        for k in 0..*ticks {
+            if k > 0 {
+                let place: f64 = delta + h * speed + 0.25 * h * h * acceleration;
+                let pace = speed + 0.5 * h * acceleration;
+                let solve = |damping: f64, spring: f64, rest: f64| {
+                    let (d, s) = (drag(k) + damping, slope(k) + spring);
+                    -(tau(k) + d * pace + s * place - spring * rest)
+                        / (mass(k) + 0.5 * h * d + 0.25 * h * h * s).max(1e-9)
+                };
+                let against = |end: f64| solve(damping(mass(k)), stiffness, end);
+                // The contact force acts on the side of the gap where the link is.
+                acceleration = if halfgap == 0.0 {
+                    against(0.0)
+                } else {
+                    let free = solve(0.0, 0.0, 0.0);
+                    let end = (place + 0.25 * h * h * free).clamp(-halfgap, halfgap);
+                    if end.abs() < halfgap { free } else { against(end) }
+                };
+                delta = place + 0.25 * h * h * acceleration;
+                speed = pace + 0.5 * h * acceleration;
+            }
+            out.push([delta, speed, acceleration]);
         }
-        out.push([delta, speed, acceleration]);
+        out
     }
-    out
 }
 
 /// δ behind a gap of ± `halfgap` with rigid ends. The link lies against one side while its torque presses it there, and moves

@@ -1,6 +1,7 @@
 //! The forms that are tried of an effect.
 
-use arm::Arm;
+use arm::{Arm, Workspace};
+use nalgebra::DMatrix;
 
 use crate::laws::{TENT, Times};
 use crate::signals::Scales;
@@ -42,6 +43,15 @@ impl Grounds<'_> {
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let others = |joint: usize| self.moving().filter(move |&other| other != joint);
         self.moving().flat_map(move |joint| others(joint).map(move |other| (joint, other)))
+    }
+
+    /// The arm's moments of inertia about the x and y axes of its base in the middle of the positions (kg m²).
+    pub fn inertia_about_base(&self) -> [f64; 2] {
+        let arm = self.arm.on_turning_base();
+        let q: Vec<f64> = [0.0; 2].iter().chain(&self.scales.middle).copied().collect();
+        let mut mass = DMatrix::zeros(q.len(), q.len());
+        arm.mass_matrix(&mut Workspace::new(&arm), &q, &mut mass);
+        [mass[(0, 0)], mass[(1, 1)]]
     }
 
     /// The number of joints.

@@ -49,7 +49,7 @@ pub use laws::Times;
 pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use regressor::Regressor;
-pub use signals::{Rigid, Scales, Signals};
+pub use signals::{Base, Rigid, Scales, Signals};
 pub use spec::{
     Against, Detectability, Effect, Experiment, InUrdf, Intervals, ONSET, Parameter, Range, Scope, Shape, Spec, Value,
 };
@@ -99,7 +99,7 @@ pub mod sensor {
     mod torque_offset;
     mod torque_scale;
 
-    pub use encoder_offset::ENCODER_OFFSET;
+    pub use encoder_offset::{ENCODER_OFFSET, SLOPE};
     pub use torque_offset::TORQUE_OFFSET;
     pub use torque_scale::TORQUE_SCALE;
     pub(crate) use torque_scale::is_beyond_tolerance;
@@ -138,23 +138,31 @@ pub mod joint {
 
 /// Unmodelled forms. They compete with the catalogue, so that other physics is not attributed to the most similar effect.
 pub mod unmodelled {
+    mod base_motion;
     mod history;
     mod load;
     mod other_position;
     mod other_speed;
     mod own_position;
     mod periodic;
+    mod position_scale;
     mod product;
     mod time;
+    mod tool_position;
+    mod tool_velocity;
 
+    pub use base_motion::BASE_MOTION;
     pub use history::HISTORY;
     pub use load::LOAD;
     pub use other_position::OTHER_POSITION;
     pub use other_speed::OTHER_SPEED;
     pub use own_position::OWN_POSITION;
     pub use periodic::{PERIODIC, columns as periodic_columns};
+    pub use position_scale::POSITION_SCALE;
     pub use product::PRODUCT;
     pub use time::TIME;
+    pub use tool_position::TOOL_POSITION;
+    pub use tool_velocity::TOOL_VELOCITY;
 }
 
 /// The effects that have a name, in the order of the documentation.
@@ -200,4 +208,8 @@ pub static UNMODELLED: &[&Spec] = &[
     &unmodelled::PRODUCT,
     &unmodelled::PERIODIC,
     &unmodelled::TIME,
+    &unmodelled::POSITION_SCALE,
+    &unmodelled::TOOL_POSITION,
+    &unmodelled::TOOL_VELOCITY,
+    &unmodelled::BASE_MOTION,
 ];

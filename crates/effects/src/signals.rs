@@ -30,6 +30,17 @@ impl Scales {
     }
 }
 
+/// The rigid model of the arm on a base that could turn about its x and y axes ([`arm::Arm::on_turning_base`]), along the motion of the arm.
+#[derive(Clone, Debug, Default)]
+pub struct Base {
+    /// The torque that holds the base (N m): `[axis]`.
+    pub torque: [Vec<f64>; 2],
+    /// The moment of inertia of the arm about the axis (kg m²): `[axis]`.
+    pub inertia: [Vec<f64>; 2],
+    /// The torque on each joint for an acceleration of the base (kg m² or kg m): `[joint][axis]`.
+    pub coupling: Vec<[Vec<f64>; 2]>,
+}
+
 /// The rigid model along the motion. The first index is the joint, the last one the tick. A list that is not needed may be
 /// empty.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +71,10 @@ pub struct Rigid<'a> {
     pub gravity: &'a [[Vec<f64>; 3]],
     /// The generalised force Jᵀ F of a force of 1 N on the tool along x, y, z of the base: `[joint][axis]`.
     pub force: &'a [[Vec<f64>; 3]],
+    /// The tool's position in the base's frame (m): `[axis]`.
+    pub tool: &'a [Vec<f64>; 3],
+    /// The arm on a base that could turn.
+    pub base: &'a Base,
 }
 
 /// A section of motion on equidistant ticks, joint by joint, with the rigid model along it.

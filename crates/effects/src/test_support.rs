@@ -4,7 +4,7 @@ use ::arm::{Arm, PARAMETERS_PER_LINK, Vector3, Workspace};
 use nalgebra::DMatrix;
 
 use crate::machine::Circumstance;
-use crate::{Effect, Machine, Rigid, Scales, Signals, State, Term, sign};
+use crate::{Base, Effect, Machine, Rigid, Scales, Signals, State, Term, sign};
 
 /// An arm of two joints, with the tool 0.5 m beyond the second.
 const URDF: &str = r#"<robot name="two"><link name="base"/>
@@ -158,6 +158,8 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
             tilt: &tilt,
             gravity: &gravity,
             force: &force,
+            tool: &[ones(), ones(), ones()],
+            base: &Base::default(),
         },
         scales: &scales,
     })

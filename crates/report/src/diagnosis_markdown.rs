@@ -22,7 +22,8 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     if let Some(changed) = words::changed(report) {
         blocks.push(text(changed));
     }
-    let sentences = words::different_load(report).into_iter().chain(words::torque_lag(report));
+    let all = [words::different_load, words::held_out_friction, words::torque_lag];
+    let sentences = all.into_iter().filter_map(|sentence| sentence(report));
     blocks.extend(sentences.map(text));
     blocks.push(text(format!("**{}**", words::verdict(report))));
     blocks.extend(doubted(&report.doubts, Certainty::Certain, report));

@@ -88,6 +88,7 @@ impl<'a> Page<'a> {
                 p.eyebrow { "testbed diagnosis · " (name(&self.report.robot)) " · " (self.recordings_in_short()) }
                 @if let Some(changed) = words::changed(self.report) { p.lead { (changed) } }
                 @if let Some(load) = words::different_load(self.report) { p.lead { (load) } }
+                @if let Some(friction) = words::held_out_friction(self.report) { p.lead { (friction) } }
                 @if let Some(lag) = words::torque_lag(self.report) { p.lead { (lag) } }
                 h1 { (words::verdict(self.report)) }
                 (self.lead())

@@ -95,8 +95,8 @@ pub fn complete(report: &Report, arm: &Arm) -> String {
 fn opening(report: &Report) -> String {
     let changed = words::changed(report).map(|text| wrapped(&text, ""));
     let mut text = changed.unwrap_or_default();
-    if let Some(load) = words::different_load(report) {
-        text += &wrapped(&load, "");
+    for sentence in [words::different_load(report), words::held_out_friction(report)].into_iter().flatten() {
+        text += &wrapped(&sentence, "");
         text.push('\n');
     }
     text += &wrapped(&words::verdict(report), "");

@@ -7,7 +7,8 @@ use arm::JointKind;
 pub use diagnosis::list;
 use diagnosis::statistics::rms;
 use diagnosis::{
-    Change, Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, Report, Verdict, Written,
+    Change, Confusable, Dependence, Finding, JointFit, NotObservable, Parameter, RecordingNames, Report, Verdict,
+    Written,
 };
 use effects::Regressor;
 
@@ -141,6 +142,10 @@ pub fn dependence(dependence: &Dependence) -> String {
         Regressor::History => "the joint's past motion (hysteresis)".into(),
         Regressor::Load => "the load torque".into(),
         Regressor::OwnPositionTimesSpeed => "the product of the joint's position and velocity".into(),
+        Regressor::PositionScale => "the scale of the joint's recorded position".into(),
+        Regressor::BaseMotion => "the torque of the arm on its base".into(),
+        Regressor::ToolPosition => "the tool's position".into(),
+        Regressor::ToolVelocity => "the tool's velocity".into(),
         Regressor::OtherJoint => match &dependence.joint {
             Some(name) => format!("the motion of {name}"),
             None => "the motion of another joint".into(),
@@ -171,10 +176,8 @@ pub fn changed(report: &Report) -> Option<String> {
 /// The most recordings whose names a sentence lists.
 const NAMED_RECORDINGS: usize = 4;
 
-/// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same.
-pub fn different_load(report: &Report) -> Option<String> {
-    let (load, recordings) = (report.different_load.as_ref()?, &report.recordings);
-    // Names that differ in their folders only keep what differs.
+/// The names of recordings in a sentence, without the folders that all have.
+fn short_names<'a>(names: impl Iterator<Item = &'a String>, recordings: &RecordingNames) -> Vec<String> {
     let mut paths = recordings.train.iter().chain(&recordings.held_out);
     let first = paths.next().map_or("", String::as_str);
     let common = paths.fold(first.len(), |length, path| {
@@ -182,14 +185,42 @@ pub fn different_load(report: &Report) -> Option<String> {
         length.min(pairs.take_while(|(a, b)| a == b).count())
     });
     let folder = first.as_bytes()[..common].iter().rposition(|&byte| matches!(byte, b'/' | b'\\'));
-    let short = |path: &String| path[folder.map_or(0, |at| at + 1)..].to_owned();
+    let mut short: Vec<String> = names.map(|path| path[folder.map_or(0, |at| at + 1)..].to_owned()).collect();
+    if short.len() > NAMED_RECORDINGS {
+        let more = short.len() + 1 - NAMED_RECORDINGS;
+        short.truncate(NAMED_RECORDINGS - 1);
+        short.push(format!("{more} more"));
+    }
+    short
+}
+
+/// The friction of the held-out recordings, where it is not that of the training recordings, in two sentences; `None` if it is.
+pub fn held_out_friction(report: &Report) -> Option<String> {
+    let all = &report.held_out_friction;
+    let joints: BTreeSet<&str> = all.iter().map(|other| other.joint.as_str()).collect();
+    let recordings: BTreeSet<&String> = all.iter().map(|other| &other.recording).collect();
+    let factors = || all.iter().map(|other| other.factor);
+    let [least, most] = [factors().min_by(f64::total_cmp)?, factors().max_by(f64::total_cmp)?];
+    let [least, most] = [least, most].map(|factor| format!("{factor:.2}"));
+    let times = if least == most { least } else { format!("{least} to {most}") };
+    let on = if joints.len() > 3 {
+        format!("{} joints", joints.len())
+    } else {
+        list(&joints.into_iter().map(str::to_owned).collect::<Vec<String>>())
+    };
+    Some(format!(
+        "The friction of {on} in {} is {times} times that in the training recordings, and the held-out errors contain the difference. \
+         Find out what differed: the temperature of the drives, or work on the arm.",
+        list(&short_names(recordings.into_iter(), &report.recordings))
+    ))
+}
+
+/// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same.
+pub fn different_load(report: &Report) -> Option<String> {
+    let (load, recordings) = (report.different_load.as_ref()?, &report.recordings);
     let all = recordings.train.len() + recordings.held_out.len();
     let (with, others) = (load.recordings.len(), all - load.recordings.len());
-    let mut names: Vec<String> = load.recordings.iter().map(short).collect();
-    if with > NAMED_RECORDINGS {
-        names.truncate(NAMED_RECORDINGS - 1);
-        names.push(format!("{} more", with + 1 - NAMED_RECORDINGS));
-    }
+    let names = short_names(load.recordings.iter(), recordings);
     let Parameter { value, ci95: [low, high], unit } = load.more_than_others;
     let (size, word) = if value < 0.0 { ([-value, -high, -low], "less") } else { ([value, low, high], "more") };
     let size = Parameter { value: size[0], ci95: [size[1], size[2]], unit };
@@ -304,8 +335,14 @@ fn of_diagnosed(report: &Report) -> String {
 /// `explains the recordings`, with the largest error on the held-out recordings unless it is small. A large error that looks like noise
 /// is not explained.
 fn explains(report: &Report) -> String {
+    let has_other_friction = |joint: &str| report.held_out_friction.iter().any(|other| other.joint == joint);
     match largest_error(report) {
         None => "explains the recordings".to_owned(),
+        Some((joint, error)) if has_other_friction(joint) => format!(
+            "explains the training recordings; with the friction of these, the error on the held-out ones is {} times the torque's \
+             standard deviation ({joint})",
+            numbers::nrmse(error)
+        ),
         Some((joint, error)) if error >= NOISY => format!(
             "leaves a residual that looks like noise, of {} times the torque's standard deviation ({joint})",
             numbers::nrmse(error)

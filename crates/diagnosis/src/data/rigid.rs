@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
-use effects::{Scales, Signals};
+use effects::{Base, Scales, Signals};
 use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
+use crate::data::turning_base;
 
 /// Signals on the ticks of one chunk. The first index is the joint, the last one the tick.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +38,10 @@ pub struct Rigid {
     pub gravity: Vec<[Vec<f64>; 3]>,
     /// The generalised force Jᵀ F of a force of 1 N on the tool along x, y, z of the base: `[joint][axis]`.
     pub force: Vec<[Vec<f64>; 3]>,
+    /// The tool's position in the base's frame (m): `[axis]`.
+    pub tool: [Vec<f64>; 3],
+    /// The arm on a base that could turn.
+    pub base: Base,
     /// The part of τ that is due to inertial parameters other than the URDF's; empty if there are none.
     pub background: Vec<Vec<f64>>,
     /// The arms, each with the tick from which on it is evaluated and the true positions of the joints minus the encoders' (rad or m).
@@ -74,6 +79,8 @@ impl Rigid {
                 tilt: &self.tilt,
                 gravity: &self.gravity,
                 force: &self.force,
+                tool: &self.tool,
+                base: &self.base,
             },
             scales,
         }
@@ -148,6 +155,9 @@ impl Rigid {
             .flatten()
             .chain(by_joint.into_iter().flatten().flatten())
             .chain(self.tilt.iter_mut().flatten())
+            .chain(&mut self.tool)
+            .chain(self.base.torque.iter_mut().chain(&mut self.base.inertia))
+            .chain(self.base.coupling.iter_mut().flatten())
             .chain(by_axis.into_iter().flatten().flatten())
     }
 
@@ -171,6 +181,8 @@ impl Rigid {
             tilt: (0..n).map(|_| [zeros(), zeros()]).collect(),
             gravity: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
             force: (0..n).map(|_| [zeros(), zeros(), zeros()]).collect(),
+            tool: [zeros(), zeros(), zeros()],
+            base: turning_base::along(arm, offset, chunk),
             background: Vec::new(),
             arms: vec![(0, arm.clone(), offset.to_vec())],
         };
@@ -253,6 +265,10 @@ impl Rigid {
                 }
             }
             arm.forward_kinematics(&mut workspace, &q);
+            let position = workspace.base_from_frame(&tool).translation;
+            for (signal, value) in rigid.tool.iter_mut().zip(position.iter()) {
+                signal[tick] = *value;
+            }
             arm.jacobian(&mut workspace, &q, &tool, &mut jacobian);
             for joint in 0..n {
                 for axis in 0..3 {
@@ -299,17 +315,17 @@ impl Rigid {
 }
 
 /// The number of ticks that are evaluated together: as many regressors as stay in the processor's caches.
-const TOGETHER: usize = 64;
+pub const TOGETHER: usize = 64;
 
 /// The states at some ticks of a chunk, joint after joint.
-struct Along {
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    qdd: Vec<f64>,
+pub struct Along {
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub qdd: Vec<f64>,
 }
 
 impl Along {
-    fn new(chunk: &Chunk, offset: &[f64], ticks: Range<usize>) -> Self {
+    pub fn new(chunk: &Chunk, offset: &[f64], ticks: Range<usize>) -> Self {
         let all = |signal: &[Vec<f64>]| -> Vec<f64> {
             signal.iter().flat_map(|joint| &joint[ticks.clone()]).copied().collect()
         };

@@ -7,6 +7,7 @@ use effects::Effect;
 use effects::drive::JOINT_ELASTICITY;
 
 use super::found::findings;
+use super::held_out_friction::OtherFriction;
 use super::inertials::{Inertials, inertials, leave_out_single_links};
 use super::locate::locate;
 use super::observability::not_testable;
@@ -23,8 +24,8 @@ use crate::data::statistics::NORMAL_95;
 use crate::diagnosis::Diagnosis;
 use crate::options::Options;
 use crate::report::{
-    Axis, DifferentLoad, Finding, JointFit, Located, NotObservable, Parameter, RecordingNames, Report, SCHEMA, Traces,
-    Unexplained, UsedPart,
+    Axis, DifferentLoad, Finding, HeldOutFriction, JointFit, Located, NotObservable, Parameter, RecordingNames, Report,
+    SCHEMA, Traces, Unexplained, UsedPart,
 };
 use crate::search::own_load::OwnLoad;
 use crate::selection::FinalFit;
@@ -54,6 +55,7 @@ pub struct Conclusion {
     pub not_observable: Vec<NotObservable>,
     changed: Option<Vec<String>>,
     different_load: Option<DifferentLoad>,
+    held_out_friction: Vec<HeldOutFriction>,
     traces: Traces,
     /// Notes on a motion that is not proposed, on torques that only the background explains, and on known effects.
     notes: Vec<String>,
@@ -94,7 +96,8 @@ impl Conclusion {
         let mut unexplained = unexplained(last, &fit, &transients, &located);
         let has_findings = !findings.is_empty();
         known_too_large(last, &fit, &options.known, &mut unexplained);
-        poorly_predicted(last, &fit, has_findings, &mut unexplained);
+        let other_friction = OtherFriction::new(last);
+        poorly_predicted(last, &fit, &other_friction, has_findings, &mut unexplained);
         if !not_enough_data.is_empty() {
             // More data are the only next step.
             unexplained.clear();
@@ -164,6 +167,7 @@ impl Conclusion {
             unexplained,
             changed,
             different_load,
+            held_out_friction: other_friction.reported(last),
         }
     }
 
@@ -218,6 +222,7 @@ impl Conclusion {
             fit,
             changed: self.changed,
             different_load: self.different_load,
+            held_out_friction: self.held_out_friction,
             inertials: self.inertials.links,
             constant_torques: self.constant_torques,
             rollout: BTreeMap::new(),

@@ -274,6 +274,18 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
             "repeat one motion of {joint} in several postures of the other joints, with and without a known load on the tool"
         ),
         Some(Regressor::Time) => format!("repeat one motion of {joint} every minute for ten minutes"),
+        Some(Regressor::BaseMotion) => {
+            "fix the base to stiff ground and repeat the motions, or measure the motion of the base".to_owned()
+        }
+        Some(Regressor::PositionScale) => {
+            format!("turn {joint} by an angle that you measure, and compare it with the recorded positions")
+        }
+        Some(Regressor::ToolPosition) => {
+            "repeat the motions without hoses, cables, cords and balancers at the tool".to_owned()
+        }
+        Some(Regressor::ToolVelocity) => {
+            "repeat the motions without hoses and flat parts at the tool, and at half the speed".to_owned()
+        }
         Some(Regressor::OwnSpeed | Regressor::OtherJoint) | None => {
             format!("move {joint} alone at three constant speeds, in both directions, twice")
         }

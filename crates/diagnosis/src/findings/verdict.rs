@@ -6,14 +6,15 @@ use arm::Arm;
 use effects::{Effect, Quantity, Regressor};
 
 use crate::data::statistics::rms;
+use crate::findings::held_out_friction::OtherFriction;
 use crate::findings::sentences;
 use crate::findings::transients::Transients;
 use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplained, Verdict};
 use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, poor, structured, swinging};
 use crate::thresholds::{
-    LEAST_MOTION, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING,
-    WITHOUT_KNOWN,
+    LEAST_MOTION, LEAST_OF_ARM, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE,
+    STRUCTURED_IN_TRAINING, WITHOUT_KNOWN,
 };
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
@@ -28,16 +29,21 @@ pub fn unexplained(
     let mut by_joint: BTreeMap<usize, (f64, Vec<(f64, Dependence)>)> = BTreeMap::new();
     for member in &judged.unmodelled {
         let candidate = &study.candidates[member.candidate];
-        let Some(joint) = candidate.joint else { continue };
         let Some(on) = candidate.hypothesis.spec().depends_on else {
             continue;
         };
         let other = candidate.hypothesis.other;
         let on = Dependence { on, joint: other.map(|other| study.data.arm.joints()[other].name.clone()) };
-        let entry = by_joint.entry(joint).or_default();
-        entry.0 = entry.0.hypot(member.share());
-        if !entry.1.iter().any(|(_, known)| *known == on) {
-            entry.1.push((member.share(), on));
+        let least = study.thresholds.least_unmodelled_share.max(LEAST_OF_ARM * member.share());
+        let is_large = |&joint: &usize| member.shares[joint] >= least;
+        let of_arm = (0..member.shares.len()).filter(|joint| candidate.joint.is_none() && is_large(joint));
+        for joint in candidate.joint.into_iter().chain(of_arm) {
+            let share = member.shares[joint];
+            let entry = by_joint.entry(joint).or_default();
+            entry.0 = entry.0.hypot(share);
+            if !entry.1.iter().any(|(_, known)| *known == on) {
+                entry.1.push((share, on.clone()));
+            }
         }
     }
     // Forms that compensate each other are larger together than what they explain.
@@ -78,10 +84,11 @@ pub fn unexplained(
         .collect()
 }
 
-/// Adds the joints that are poorly predicted with the findings.
+/// Adds the joints that are poorly predicted with the findings, not only because the friction of the held-out recordings differs.
 pub fn poorly_predicted(
     last: &FinalFit,
     fit: &BTreeMap<String, JointFit>,
+    other_friction: &OtherFriction,
     has_findings: bool,
     unexplained: &mut Vec<Unexplained>,
 ) {
@@ -92,7 +99,7 @@ pub fn poorly_predicted(
         let is_known = unexplained.iter().any(|residual| residual.joint == *name);
         // Without findings, a torque that looks like noise is no torque of the model either.
         let is_unrelated = !has_findings && error >= PARTLY;
-        let is_poor = is_unrelated || poor(this).is_some();
+        let is_poor = is_unrelated || poor(this, other_friction.remaining(joint)).is_some();
         let in_training = structured_in_training(last, joint);
         if is_known {
             continue;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::regression::fit::{Fit, Products};
 use crate::search::problem::Problem;
 use crate::search::scan::contact_gain;
+use crate::selection::held_out_friction::{best_factor, is_other};
 use crate::selection::judge::{Judged, Member, is_idle};
 use crate::thresholds::{AS_WELL, CLEAR_DRIVE, GAIN_PIECE, LEAST_OF_HALF, POWER_PIECES};
 
@@ -53,9 +54,18 @@ pub fn held_out_gain(problem: &Problem<'_>, held: Option<&Products>, judged: &Ju
         });
     }
     let fit = &judged.named.fit;
-    let [with, without] = [fit, &without.fit].map(|fit| problem.held_out_rss(held, member.candidate, fit));
+    let [with, of_others] = [fit, &without.fit].map(|fit| problem.held_out_rss(held, member.candidate, fit));
     let gain = |without: &[f64]| 1.0 - (with[joint].max(0.0) / without[joint].max(1e-300)).sqrt();
-    let mut gains = vec![gain(&without)];
+    let mut gains = vec![gain(&of_others)];
+    let spec = candidate.hypothesis.spec();
+    if spec.is_friction || spec.is_form_of_friction() {
+        // If all friction of the joint is less in the held-out recordings, they are predicted better without a part of it.
+        let (factor, with) = best_factor(problem, held, &judged.named.set, fit, joint);
+        if is_other(factor) {
+            let (_, without) = best_factor(problem, held, &without.set, &without.fit, joint);
+            gains.push(1.0 - (with / without.max(1e-300)).sqrt());
+        }
+    }
     // Every drive has friction, and most have a rotor: they also count as useful if the fit without refitting predicts
     // worse without them. In a refit, the inertial parameters may change by more than the friction of a joint with a large
     // load.

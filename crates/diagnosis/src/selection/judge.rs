@@ -38,6 +38,11 @@ impl Member {
     pub fn share(&self) -> f64 {
         self.shares.iter().copied().fold(0.0, f64::max)
     }
+
+    /// The joint on which its share is largest.
+    pub fn place(&self) -> usize {
+        (0..self.shares.len()).max_by(|&a, &b| self.shares[a].total_cmp(&self.shares[b])).unwrap_or(0)
+    }
 }
 
 /// The named effects, and the unmodelled forms.
@@ -181,7 +186,7 @@ fn beside(problem: &Problem<'_>, kept: &Selection, unmodelled: &[Member]) -> Vec
         let mut members = describe(problem, &all);
         members.retain(|member| !kept.set.contains(&member.candidate));
         let fails = |member: &Member| {
-            let joint = problem.candidates[member.candidate].joint.unwrap_or(0);
+            let joint = member.place();
             let mismatch = problem.products.power(joint).sqrt() / problem.data.scales.torque[joint].max(1e-300);
             member.share() < problem.thresholds.least_unmodelled_share.max(LEAST_OF_MISMATCH * mismatch)
                 || member.evidence < problem.thresholds.least_unmodelled_evidence
@@ -270,7 +275,7 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
     };
     let fails = |member: &Member| -> bool {
         let share = member.share();
-        let at = (0..dof).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b])).unwrap_or(0);
+        let at = member.place();
         if !is_named(member) {
             let named = largest(&|m| is_named(m) && !is_baseline(m), at);
             return share < study.thresholds.least_unmodelled_share

@@ -130,9 +130,9 @@ pub fn structured(fit: &JointFit) -> Option<f64> {
     is_structured.then_some(error)
 }
 
-/// The error (NRMSE) of a joint with the findings, if it is large and above the noise.
-pub fn poor(fit: &JointFit) -> Option<f64> {
-    let error = fit.error();
+/// The part `counted` of the error (NRMSE) of a joint with the findings, if it is large and above the noise.
+pub fn poor(fit: &JointFit, counted: f64) -> Option<f64> {
+    let error = counted * fit.error();
     (error >= POOR && error * fit.torque_std >= POOR_ABOVE_NOISE * fit.noise).then_some(error)
 }
 

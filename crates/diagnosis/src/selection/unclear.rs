@@ -156,7 +156,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
         let residuals = structured(&fit)
             .into_iter()
-            .chain(of_change.and(poor(&fit)))
+            .chain(of_change.and(poor(&fit, 1.0)))
             .chain(has_forms.then(|| fit.error().max(fit.train_nrmse_augmented)));
         factor * residuals.fold(0.0, f64::max) > member.shares[joint]
     };

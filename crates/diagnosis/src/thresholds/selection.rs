@@ -161,3 +161,9 @@ pub const LARGEST_BODY: f64 = 0.3;
 pub const FEW_JOINTS: usize = 4;
 /// What is subtracted on such an arm from the evidence of a payload against wrong links (nats). Source: as for [`FEW_JOINTS`].
 pub const BESIDE_FEW_LINKS: f64 = 40.0;
+/// The difference from one of a factor of a joint's friction in the held-out recordings from which it is other friction than that of the training
+/// recordings. Source: as for `OF_OTHER_FRICTION`.
+pub const OTHER_HELD_OUT_FRICTION: f64 = 0.15;
+/// The largest such factor; its inverse is the smallest. Drives that warm up do not change their friction by more. Source: as for
+/// `OF_OTHER_FRICTION`.
+pub const MOST_HELD_OUT_FRICTION: f64 = 3.0;

@@ -24,3 +24,4 @@ mod support;
 mod thresholds;
 mod torque_lag;
 mod unnamed;
+mod whole_arm;

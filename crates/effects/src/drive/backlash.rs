@@ -1,7 +1,7 @@
 //! A gap in the gear.
 
 use super::delay::SECOND_ENCODER;
-use crate::compliance::{LinkSide, gap, noise_behind, sprung};
+use crate::compliance::{Compliant, LinkSide, gap, noise_behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{Detectability, Form, Law, Parameter, Quantity, Range, Signals, Size, Spec, Systematic, Term, Turn};
@@ -97,7 +97,7 @@ fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
     } else {
         gap(joint, halfgap, motion)
     };
-    LinkSide::new(joint, ticks)
+    LinkSide::new(Compliant::Joint(joint), ticks)
 }
 
 /// The damping ratios of a gap's ends that are tried first: one without bouncing, one with it. Source: `prove`, seeds

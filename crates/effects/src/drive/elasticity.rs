@@ -1,7 +1,7 @@
 //! A drive that turns its link through a spring.
 
 use super::delay::SECOND_ENCODER;
-use crate::compliance::{LinkSide, noise_behind, sprung};
+use crate::compliance::{Compliant, LinkSide, noise_behind, sprung};
 use crate::fitted::is_near_one;
 use crate::laws::ACCELERATION;
 use crate::{Detectability, Form, Law, Parameter, Quantity, Range, Size, Spec, Sprung, Systematic, Term, Turn};
@@ -82,7 +82,7 @@ pub static ELASTIC: Law = Law {
 
 fn link_side(term: &Term, motion: &crate::Signals<'_>) -> LinkSide {
     let (joint, [stiffness, damping, ..]) = (term.of[0], term.sizes);
-    LinkSide::new(joint, sprung(joint, 0.0, stiffness, |_| damping, motion))
+    LinkSide::new(Compliant::Joint(joint), sprung(joint, 0.0, stiffness, |_| damping, motion))
 }
 
 /// The frequencies at which the link swings on the springs that are tried first (Hz).

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ._core import JointwiseError
 from ._diagnose import RecordingWarning, diagnose
 from ._dynamics import InverseDynamics
-from ._result import Alternative, Diagnosis, DifferentLoad, Doubt, Effect, JointFit, NotDiagnosed, NotTestable, Parameter, Unexplained
+from ._result import Alternative, Diagnosis, DifferentLoad, Doubt, Effect, HeldOutFriction, JointFit, NotDiagnosed, NotTestable, Parameter, Unexplained
 
 if TYPE_CHECKING:
     from ._learning import IndependentJointLearning
@@ -20,6 +20,7 @@ __all__ = [
     "DifferentLoad",
     "Doubt",
     "Effect",
+    "HeldOutFriction",
     "IndependentJointLearning",
     "InverseDynamics",
     "JointFit",

@@ -179,6 +179,16 @@ class DifferentLoad:
 
 
 @dataclass(frozen=True)
+class HeldOutFriction:
+    """A joint whose friction in a held-out recording is a multiple of that in the training recordings."""
+
+    recording: str
+    joint: str
+    factor: float
+    """The friction over that in the training recordings."""
+
+
+@dataclass(frozen=True)
 class Doubt:
     """A recording whose units, signs, order or zeros do not fit the robot."""
 
@@ -224,6 +234,9 @@ class Diagnosis:
     """What changed since the recordings from before, in sentences; None without such recordings."""
     different_load: Optional[DifferentLoad]
     """The load at the tip that only some of the recordings have; None if all have the same."""
+    held_out_friction: tuple[HeldOutFriction, ...]
+    """The joints whose friction in a held-out recording differs from that in the training recordings, which explains most of their
+    held-out error; empty if there are none."""
     constant_torques: Mapping[str, Parameter]
     """The constant torques that correct the joints and that no effect names, in N m or N, by the joints' names."""
     notes: tuple[str, ...]
@@ -263,6 +276,9 @@ class Diagnosis:
             different_load=None
             if load is None
             else DifferentLoad(tuple(load["recordings"]), load.get("until"), _parameter(load["more_than_others"])),
+            held_out_friction=tuple(
+                HeldOutFriction(of["recording"], of["joint"], of["factor"]) for of in report.get("held_out_friction", [])
+            ),
             constant_torques=_frozen({joint: _parameter(of) for joint, of in report.get("constant_torques", {}).items()}),
             notes=notes,
             _outcome=outcome,

@@ -57,7 +57,12 @@ impl Against {
                 let joint = arm.joints().iter().position(|joint| joint.name == *name)?;
                 Some(Self::OtherSpeed(joint))
             }
-            Regressor::History | Regressor::OwnPositionTimesSpeed => None,
+            Regressor::BaseMotion
+            | Regressor::History
+            | Regressor::OwnPositionTimesSpeed
+            | Regressor::PositionScale
+            | Regressor::ToolPosition
+            | Regressor::ToolVelocity => None,
         }
     }
 

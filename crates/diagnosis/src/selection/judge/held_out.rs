@@ -27,8 +27,9 @@ pub fn predicting(problem: &Problem<'_>, held: &Products, mut selected: Selectio
                 let set: Vec<usize> = selected.others(c);
                 let rest = problem.forward(problem.choose(set, &selected.fit.weights), &simple);
                 let (outside, inside) = (loss(&rest) - with, rest.fit.loss - selected.fit.loss);
-                let joint = problem.candidates[c].joint.unwrap_or(0);
-                let length = held.evidence[joint] / problem.products.evidence[joint].max(1e-9);
+                let on = problem.candidates[c].joint.map_or(0..held.evidence.len(), |joint| joint..joint + 1);
+                let evidence = |products: &Products| products.evidence[on.clone()].iter().sum::<f64>();
+                let length = evidence(held) / evidence(problem.products).max(1e-9);
                 (outside - problem.thresholds.held_out * length * inside, rest)
             })
             .collect::<Vec<_>>()

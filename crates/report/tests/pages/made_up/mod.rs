@@ -160,6 +160,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         fit,
         changed: None,
         different_load: None,
+        held_out_friction: Vec::new(),
         inertials: BTreeMap::new(),
         constant_torques: BTreeMap::new(),
         rollout: (0..joints)

@@ -1,0 +1,44 @@
+//! A base that sways under the torque of the arm.
+
+use crate::compliance::{Compliant, LinkSide, swaying};
+use crate::{Form, Law, Regressor, Signals, Spec, Term};
+
+/// A base that sways under the torque of the arm, such as a table, a cart or a pedestal.
+pub static BASE_MOTION: Spec = Spec {
+    name: "base_motion",
+    depends_on: Some(Regressor::BaseMotion),
+    forms: |grounds| {
+        let inertia = grounds.inertia_about_base();
+        let form = |hertz: f64| {
+            let omega = std::f64::consts::TAU * hertz;
+            let term = |axis: usize| {
+                let sizes = [inertia[axis] * omega * omega, 2.0 * DAMPING_RATIO * inertia[axis] * omega];
+                Term::about(&SWAY, axis).sized(sizes)
+            };
+            Form::of_arm(vec![term(0), term(1)])
+        };
+        let sways = inertia.iter().all(|inertia| *inertia > 0.0);
+        if sways { FREQUENCIES.map(form).to_vec() } else { Vec::new() }
+    },
+    ..Spec::UNMODELLED
+};
+
+/// The torque on the joints of a base that turns about its x axis (`of[0]` is 0) or y axis (1) on a spring and a damper; sizes are
+/// stiffness (N m/rad) and damping (N m s/rad).
+static SWAY: Law = Law {
+    name: "sway",
+    column: |term, joint, motion| Some(link_side(term, motion).torque(joint, motion.rigid)),
+    needs_model: true,
+    link_side: Some(link_side),
+    ..Law::PLAIN
+};
+
+fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
+    let (axis, [stiffness, damping, ..]) = (term.of[0], term.sizes);
+    LinkSide::new(Compliant::Base(axis), swaying(axis, stiffness, damping, motion))
+}
+
+/// The frequencies at which the base sways under the arm (Hz). Above the highest one, it follows the torque.
+const FREQUENCIES: [f64; 4] = [3.0, 6.0, 12.0, 25.0];
+/// The damping ratio of the base.
+const DAMPING_RATIO: f64 = 0.05;
