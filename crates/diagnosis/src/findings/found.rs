@@ -65,7 +65,9 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
     let is_doubtful = over_links.is_some_and(|nats| probability(nats) < SUREST);
     let as_links = is_doubtful.then(|| (Hypothesis::of(&INERTIAL_PARAMETERS), None));
     // Factors on the masses stand for the torque constants of the other joints.
-    let of_others = torque_constants::alike(study, &last.judged.named).contains(&member.candidate);
+    let named = &last.judged.named;
+    let of_others = torque_constants::alike(study, named).contains(&member.candidate);
+    let of_all = candidate.hypothesis.spec().is_wrong_mass && torque_constants::most_are_alike(study, named);
     let as_masses = of_others.then(|| (Hypothesis::of(&INERTIAL_SCALE), None));
     let change = change(last, member.candidate);
     let mut list = Vec::new();
@@ -83,6 +85,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &S
         let is_of_size = last_link.is_some() || change.is_some() || spec.is_simulated;
         let is_body = study.is_payload(member.candidate) && change.is_none();
         let is_open = of_others
+            || of_all
             || is_of_size && may_be_nothing(spec, &named.parameters)
             || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain);
         list.push(Finding {

@@ -132,10 +132,7 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
         let column = study.torque_constant(joint)?;
         Some(judged.named.fit.coefficient(column).abs()).filter(|deviation| *deviation >= least)
     };
-    let deviations: Vec<f64> = (0..study.data.motions.dof)
-        .filter_map(|joint| Some(judged.named.fit.coefficient(study.torque_constant(joint)?)))
-        .collect();
-    if are_alike(&deviations, least) {
+    if are_alike(&deviations(study, &judged.named), least) {
         return None;
     }
     let scale = |joint: usize| allowed.iter().copied().find(|&c| names(study, c) == Some(joint));
@@ -144,6 +141,32 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
         .filter_map(|joint| Some((deviation(joint)?, joint, scale(joint)?)))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, joint, scale)| (joint, scale))
+}
+
+/// The deviations of the torque constants from one that the background corrects, by joint; those that `selected` names are not among them.
+fn deviations(study: &Study, selected: &Selection) -> Vec<f64> {
+    let deviation = |joint: usize| Some(selected.fit.coefficient(study.torque_constant(joint)?));
+    (0..study.data.motions.dof).filter_map(deviation).collect()
+}
+
+/// Whether `candidate` of `selected` names a torque constant, and those of half of the joints deviate in the same direction, with it and in the
+/// background: masses that are wrong by the inverse factor explain the same, as where one joint's torque is none and the masses follow it.
+pub fn is_one_of_many(study: &Study, selected: &Selection, candidate: usize) -> bool {
+    let Some(named) = names(study, candidate) else { return false };
+    let own = selected.fit.coefficient(study.candidates[candidate].columns[0]);
+    let joints = (0..study.data.motions.dof).filter(|&joint| joint == named || study.data.scales.torque[joint] > 0.0);
+    is_of_many(own, &deviations(study, selected), joints.count(), MOST_USUAL * study.stated.torque_accuracy())
+}
+
+/// Whether those of half of the `joints` deviate by `least` or more in the direction of `own`, with it.
+fn is_of_many(own: f64, others: &[f64], joints: usize, least: f64) -> bool {
+    let alike = others.iter().filter(|&&deviation| own.signum() * deviation >= least).count();
+    alike >= LEAST_ALIKE && 2 * (alike + 1) >= joints
+}
+
+/// Whether most of the torque constants deviate alike in the background, so that the sizes of masses depend on a common factor of all torques.
+pub fn most_are_alike(study: &Study, selected: &Selection) -> bool {
+    are_alike(&deviations(study, selected), MOST_USUAL * study.stated.torque_accuracy())
 }
 
 /// Whether most of the torque constants deviate by `least` or more in the same direction: a common cause, and not an effect on each.
@@ -165,7 +188,7 @@ fn is_clear(study: &mut Study, selected: &Selection, scale: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{are_alike, are_of_others};
+    use super::{are_alike, are_of_others, is_of_many};
 
     /// A simulated arm of seven joints with an effect outside the catalogue on the sixth: five constants were off by the same factor.
     #[test]
@@ -174,6 +197,14 @@ mod tests {
         assert!(!are_alike(&[0.05, -0.16, -0.05], 0.125));
         assert!(!are_alike(&[0.2, -0.2, 0.2, -0.2], 0.125));
         assert!(!are_alike(&[0.3], 0.125));
+    }
+
+    /// A simulated UR10 whose first joint had a dead band in its torque: the second one's exact constant was named with 1.27.
+    #[test]
+    fn a_constant_beside_others_that_deviate_alike_is_no_effect() {
+        assert!(is_of_many(0.27, &[0.0, 0.26, 0.17, 0.12, 0.02], 6, 0.1));
+        assert!(!is_of_many(0.27, &[0.0, 0.26, 0.07, -0.12, 0.02], 6, 0.1));
+        assert!(!is_of_many(-0.27, &[0.0, 0.26, 0.17, 0.12, 0.02], 6, 0.1), "in the other direction");
     }
 
     /// Torques of which those of the last three joints are in amperes: the first four seem to be 2.7 times as large as those of an arm

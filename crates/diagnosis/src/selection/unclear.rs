@@ -37,6 +37,8 @@ pub enum Unclear {
     Variation,
     /// Friction of its own in each recording explains as much.
     OwnFriction,
+    /// The torque constants of many joints deviate alike.
+    Constants,
 }
 
 impl Unclear {
@@ -51,6 +53,7 @@ impl Unclear {
             Self::OneJoint => "a torque on one of its joints alone explains more",
             Self::Variation => "recordings of one side of the change differ among themselves by as much",
             Self::OwnFriction => "another friction in each recording explains as much",
+            Self::Constants => "the torque constants of many joints deviate alike, as with other masses",
         }
     }
 }
@@ -110,6 +113,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Variation)
         } else if may_be_own_friction(study, judged, member) {
             Some(Unclear::OwnFriction)
+        } else if torque_constants::is_one_of_many(study, &judged.named, member.candidate) {
+            Some(Unclear::Constants)
         } else {
             None
         }
