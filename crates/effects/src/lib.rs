@@ -99,7 +99,7 @@ pub mod sensor {
     mod torque_offset;
     mod torque_scale;
 
-    pub use encoder_offset::{ENCODER_OFFSET, SLOPE};
+    pub use encoder_offset::ENCODER_OFFSET;
     pub use torque_offset::TORQUE_OFFSET;
     pub use torque_scale::TORQUE_SCALE;
     pub(crate) use torque_scale::is_beyond_tolerance;

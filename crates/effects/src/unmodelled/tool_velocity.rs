@@ -7,16 +7,13 @@ pub static TOOL_VELOCITY: Spec = Spec {
     name: "tool_velocity",
     depends_on: Some(Regressor::ToolVelocity),
     forms: |_| {
-        let form = |powers: &[usize]| Form::of_arm(powers.iter().map(|&k| Term::about(&TOOL_DRAG, k)).collect());
-        vec![form(&[LINEAR]), form(&[QUADRATIC]), form(&[LINEAR, QUADRATIC])]
+        let [linear, quadratic] = [0, 1].map(|form| Term::about(&TOOL_DRAG, 0).form(form));
+        [vec![linear], vec![quadratic], vec![linear, quadratic]].map(Form::of_arm).to_vec()
     },
     ..Spec::UNMODELLED
 };
 
-const LINEAR: usize = 0;
-const QUADRATIC: usize = 1;
-
-/// Jᵀ v or Jᵀ v |v|, where J is the Jacobian of the tool's position and v = J q̇.
+/// Jᵀ v (form 0) or Jᵀ v |v| (form 1), where J is the Jacobian of the tool's position and v = J q̇.
 static TOOL_DRAG: Law = Law {
     name: "drag on the tool",
     column: |term, joint, motion| {
@@ -27,7 +24,7 @@ static TOOL_DRAG: Law = Law {
             });
             let along: f64 = (0..3).map(|axis| force[joint][axis][k] * v[axis]).sum();
             let speed = v.iter().map(|v| v * v).sum::<f64>().sqrt();
-            if term.of[0] == QUADRATIC { along * speed } else { along }
+            if term.form == 1 { along * speed } else { along }
         })
     },
     needs_model: true,
