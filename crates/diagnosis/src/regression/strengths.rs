@@ -19,6 +19,8 @@ pub struct Strengths {
     pub friction: f64,
     /// The joints and recordings in which friction is much different.
     pub varied: Vec<(usize, usize)>,
+    /// How much the friction of each joint differs between recordings, relative to `friction`.
+    pub between: Vec<f64>,
     /// The constant torques of the joints, relative to their prior.
     pub offset: f64,
     /// The torque constants, relative to their prior.
@@ -66,6 +68,10 @@ impl fmt::Display for Strengths {
         for (joint, recording) in &self.varied {
             write!(f, "; friction of joint {joint} in recording {recording}")?;
         }
+        if self.between.iter().any(|&between| between != 1.0) {
+            let between: Vec<String> = self.between.iter().map(f64::to_string).collect();
+            write!(f, "; friction between recordings × {}", between.join(" "))?;
+        }
         if self.lag { write!(f, "; lag") } else { Ok(()) }
     }
 }
@@ -78,6 +84,7 @@ impl Strengths {
             least: vec![0.0; links],
             friction: 0.0,
             varied: Vec::new(),
+            between: vec![1.0; links],
             offset: 0.0,
             gain: 0.0,
             named_offsets: Vec::new(),
@@ -102,7 +109,8 @@ impl Strengths {
     /// The strength of the friction of a joint that a recording has of its own.
     pub fn own_friction(&self, joint: Option<usize>, recording: usize) -> f64 {
         let is_varied = joint.is_some_and(|joint| self.varied.contains(&(joint, recording)));
-        if is_varied { self.friction.max(VARIED_FRICTION) } else { self.friction }
+        let between = joint.map_or(1.0, |joint| self.between[joint]);
+        if is_varied { self.friction.max(VARIED_FRICTION) } else { between * self.friction }
     }
 
     /// Whether the centre of mass of some link is a placeholder.
@@ -289,7 +297,7 @@ impl Strengths {
     pub fn part_that_differs(&self, other: &Self) -> Part {
         if self.links != other.links {
             Part::Links
-        } else if self.friction != other.friction || self.varied != other.varied {
+        } else if self.friction != other.friction || self.varied != other.varied || self.between != other.between {
             Part::Friction
         } else {
             Part::Gain

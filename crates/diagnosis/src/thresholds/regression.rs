@@ -82,6 +82,12 @@ pub const FRICTION_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
 /// The strength of the friction that each recording has of its own on a joint where it differs much between recordings: 15 % of the joint's
 /// torque. Source: simulated arms on which the friction of one joint was 1.5 to 2.6 times as large in one recording, 10 to 19 % of its torque.
 pub const VARIED_FRICTION: f64 = 10.0;
+/// How much the friction of a joint may differ between recordings, relative to the strength of all joints: the choices that are tried, on all
+/// joints at once. The evidence decides. Source: cases of `prove` (seed 28113005) in which the Coulomb friction of a wrist was left to the background,
+/// and the held-out error was 6 to 15 times that of full identification.
+pub const FRICTION_BETWEEN: [&[f64]; 3] = [&[0.0, 0.1, 0.3], &[0.1, 0.3], &[0.0]];
+/// The friction that each recording has of its own, over its prior, below which it may be none at all. Source: as for [`FRICTION_BETWEEN`].
+pub const SAME_FRICTION: f64 = 0.05;
 /// The strengths of the joints' constant torques that are tried, relative to [`FRICTION_PRIOR`]. Source: recordings of
 /// ten real robots, of whose 54 joints six instead of nine have an error above 1.25 times that of full identification;
 /// they are selected in 17 of 24 simulated cases with small offsets and in one of 24 others.

@@ -227,3 +227,26 @@ fn friction_of_one_recording_is_noted_and_leaves_the_others_alone() {
     let note = notes.next().unwrap_or_else(|| panic!("{:?}", diagnosis.remarks));
     assert!(note.contains("(elbow: +0.9") && note.contains(" in b)"), "{note}");
 }
+
+/// The friction of two joints differs from recording to recording. A small friction of the third one, which does not, keeps its name.
+#[test]
+fn friction_that_all_recordings_have_keeps_its_name() {
+    const LEVEL: f64 = 0.12;
+    let recordings = [0, 1, 2, 3].map(|variant: usize| {
+        let warm = [1.0, 1.6, 1.2, 0.7][variant];
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            for (joint, tau) in tau.iter_mut().enumerate() {
+                let speed = motion.qd[joint];
+                *tau += if joint == ELBOW { LEVEL * speed.signum() } else { warm * (1.5 * speed.signum() + speed) };
+            }
+        };
+        regular(&recorded(&trio(), variant, 16.0, &injected))
+    });
+    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let is_it = |finding: &&diagnosis::Finding| {
+        finding.effect == "coulomb_friction" && finding.joint.as_deref() == Some("elbow")
+    };
+    let finding = diagnosis.report.findings.iter().find(is_it);
+    let level = &finding.unwrap_or_else(|| panic!("{:?}", sentences(&diagnosis))).parameters["level"];
+    assert!((level.value - LEVEL).abs() < 0.2 * LEVEL, "{level:?}");
+}

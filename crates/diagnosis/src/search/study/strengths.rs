@@ -80,6 +80,7 @@ impl Study {
             let pairs = strengths.links.iter().zip(&self.strengths.links);
             strengths.friction == self.strengths.friction
                 && strengths.varied == self.strengths.varied
+                && strengths.between == self.strengths.between
                 && strengths.offset == self.strengths.offset
                 && strengths.gain == self.strengths.gain
                 && pairs.clone().all(|(new, old)| new >= old)
