@@ -1,5 +1,7 @@
 //! The diagnosis from beginning to end: one phase after the other.
 
+use std::collections::BTreeMap;
+
 use arm::Arm;
 
 use crate::data::input::{Input, check};
@@ -9,7 +11,7 @@ use crate::look::Look;
 use crate::next;
 use crate::options::{Options, Step};
 use crate::thresholds::{CUTOFF, MOST_LAGS};
-use crate::torque_lag::{TorqueLag, WithoutLag};
+use crate::torque_lag::{Lags, TorqueLag, WithoutLag, own_lags, remark_on_own};
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
 ///
@@ -23,7 +25,7 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Fn(Step<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
-    let (first, lag, without_lag) = without_torque_lag(arm, inputs, options, progress)?;
+    let (first, lags, without_lag) = without_torque_lag(arm, inputs, options, progress)?;
     let inputs = &without_lag.of(inputs)[..];
     let Look { last, conclusion } = first.or_slower(arm, inputs, options, progress)?;
     let next = if options.next && conclusion.not_enough_data.is_empty() {
@@ -33,7 +35,8 @@ pub fn diagnose(
         None
     };
     let mut diagnosis = conclusion.diagnosis(arm, last);
-    diagnosis.report.torque_lag = lag;
+    diagnosis.report.torque_lag = Some(lags.common).filter(|&lag| lag != 0.0);
+    diagnosis.report.own_torque_lags = own_lags_by_name(inputs, &lags);
     if let Some(next) = next {
         diagnosis.report.next_experiment = Some(next.report);
         diagnosis.next = next.motion;
@@ -41,42 +44,65 @@ pub fn diagnose(
     Ok(diagnosis)
 }
 
-/// A look at the recordings without the lag of their torques, the lag (s) if there is one, and these recordings. Without a stated lag, it
-/// is the one that the residuals of a look show, if they do.
+/// A look at the recordings without the lags of their torques, these lags, and these recordings. Without a stated lag, they are those that the
+/// residuals of a look show, if they do.
 fn without_torque_lag(
     arm: &Arm,
     inputs: &[Input<'_>],
     options: &Options,
     progress: &dyn Fn(Step<'_>),
-) -> Result<(Look, Option<f64>, WithoutLag), DiagnosisError> {
+) -> Result<(Look, Lags, WithoutLag), DiagnosisError> {
     let stated = options.torque_lag.or(options.only.is_some().then_some(0.0));
-    let mut lag = stated.unwrap_or(0.0);
-    let mut without = WithoutLag::new(inputs, lag);
+    let mut lags = Lags { common: stated.unwrap_or(0.0), own: Vec::new() };
+    let mut without = WithoutLag::new(inputs, &lags);
     let moved = without.of(inputs);
     check(arm, &moved, options.cutoff.unwrap_or(CUTOFF))?;
     let mut look = Look::new(arm, &moved, options, progress)?;
     if stated.is_some() {
-        return Ok((look, Some(lag).filter(|&lag| lag != 0.0), without));
+        return Ok((look, lags, without));
     }
     let again = |step: Step<'_>| {
         let doing = format!("torques without their lag: {}", step.doing);
         progress(Step::new(step.done, &doing));
     };
-    let mut found = None;
-    for _ in 0..MOST_LAGS {
-        let Some(more) = TorqueLag::of(&look.last) else { break };
-        let next = more.after(lag);
-        let recordings = WithoutLag::new(inputs, next.seconds);
+    let (mut found, mut of_all, mut of_single) = (None, 0, 0);
+    loop {
+        let mut next = lags.clone();
+        // First those of single recordings, which a lag of all would share with the others.
+        let own = if of_single < MOST_LAGS { own_lags(&look.last, &lags.own) } else { None };
+        let removed = if let Some(own) = own {
+            of_single += 1;
+            let before = |at: usize| lags.own.get(at).copied().unwrap_or(0.0);
+            next.own = own.iter().enumerate().map(|(at, more)| before(at) + more).collect();
+            let some = inputs.iter().zip(&next.own).filter(|(_, own)| **own != 0.0);
+            some.map(|(input, own)| format!("{}: {:.1} ms", input.name, 1e3 * own)).collect::<Vec<_>>().join(", ")
+        } else if of_all < MOST_LAGS
+            && let Some(more) = TorqueLag::of(&look.last)
+        {
+            of_all += 1;
+            next.common += more.seconds;
+            found = Some(more);
+            format!("{:.1} ms", 1e3 * next.common)
+        } else {
+            break;
+        };
+        let recordings = WithoutLag::new(inputs, &next);
         let next_moved = recordings.of(inputs);
         if check(arm, &next_moved, options.cutoff.unwrap_or(CUTOFF)).is_err() {
             break;
         }
         let trace = std::mem::take(&mut look.last.study.trace);
-        look = Look::again(arm, &next_moved, options, (trace, &next), &again)?;
-        (lag, without, found) = (next.seconds, recordings, Some(next));
+        look = Look::again(arm, &next_moved, options, (trace, removed), &again)?;
+        (lags, without) = (next, recordings);
     }
-    if let Some(found) = found {
-        look.last.study.data.motions.remarks.push(found.remark());
-    }
-    Ok((look, found.map(|found| found.seconds), without))
+    let of_all = found.filter(|_| lags.common != 0.0).map(|found| found.remark(lags.common));
+    let of_single = remark_on_own(inputs, &own_lags_by_name(inputs, &lags));
+    look.last.study.data.motions.remarks.extend(of_all.into_iter().chain(of_single));
+    Ok((look, lags, without))
+}
+
+/// The lags of single recordings by their names (s), without those that have none.
+fn own_lags_by_name(inputs: &[Input<'_>], lags: &Lags) -> BTreeMap<String, f64> {
+    let own = inputs.iter().zip(&lags.own).filter(|(_, own)| **own != 0.0);
+    own.map(|(input, own)| (input.name.to_owned(), *own)).collect()
 }

@@ -40,6 +40,7 @@ impl Diagnosis {
             recordings,
             cutoff: None,
             torque_lag: None,
+            own_torque_lags: BTreeMap::new(),
             verdict: Verdict::UnitsFirst,
             doubts,
             warnings: Vec::new(),

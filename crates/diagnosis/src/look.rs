@@ -20,7 +20,6 @@ use crate::thresholds::{
     CERTAIN_ENOUGH, FALLS_TO, LEAST_CUTOFF_PERIODS, LEAST_FOR_DYNAMICS, OF_THE_UNEXPLAINED, SLOWER_FILTER,
     WORTH_SLOWING,
 };
-use crate::torque_lag::TorqueLag;
 use crate::trace::{Action, Trace};
 
 /// The final fit with one filter, and the conclusions.
@@ -45,7 +44,7 @@ impl Look {
         Self::within(arm, inputs, options, (None, Trace::default()), progress)
     }
 
-    /// A look at recordings from which a `lag` of their torques was removed. It continues the trace of the look that showed the lag.
+    /// A look at recordings from which a lag of their torques was `removed`. It continues the trace of the look that showed the lag.
     ///
     /// # Errors
     /// [`DiagnosisError`], if there is nothing to fit.
@@ -53,10 +52,9 @@ impl Look {
         arm: &Arm,
         inputs: &[Input<'_>],
         options: &Options,
-        (trace, lag): (Trace, &TorqueLag),
+        (trace, removed): (Trace, String),
         progress: &dyn Fn(Step<'_>),
     ) -> Result<Self, DiagnosisError> {
-        let removed = format!("{:.1} ms", 1e3 * lag.seconds);
         trace.step([(Action::Lag, removed, None, "the residuals of all joints show this lag", 0.0)]);
         Self::within(arm, inputs, options, (None, trace), progress)
     }

@@ -55,6 +55,9 @@ pub struct Report {
     /// The lag of all recorded torques behind the positions that was removed (s); negative if they were ahead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_lag: Option<f64>,
+    /// The lags of the torques of single recordings beyond `torque_lag`, by the recordings' names, which were removed (s).
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub own_torque_lags: BTreeMap<String, f64>,
     /// The verdict in one word.
     pub verdict: Verdict,
     /// Doubts about the units, signs, order or zeros of the recordings, with their remedies. No effect is searched before

@@ -8,7 +8,7 @@ use effects::Quantity;
 
 use crate::block::{Block, table, text};
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, markdown, next_words, not_diagnosed, numbers, sizes, terminal, words};
+use crate::{alternatives, differences, doubts, markdown, next_words, not_diagnosed, numbers, sizes, terminal, words};
 
 /// The diagnosis of `arm` as Markdown; the same report gives the same bytes.
 pub fn diagnosis_markdown(report: &Report, arm: &Arm) -> String {
@@ -22,7 +22,7 @@ fn blocks(report: &Report, arm: &Arm) -> Vec<Block> {
     if let Some(changed) = words::changed(report) {
         blocks.push(text(changed));
     }
-    let all = [words::different_load, words::held_out_friction, words::torque_lag];
+    let all = [differences::different_load, differences::held_out_friction, differences::torque_lag];
     let sentences = all.into_iter().filter_map(|sentence| sentence(report));
     blocks.extend(sentences.map(text));
     blocks.push(text(format!("**{}**", words::verdict(report))));

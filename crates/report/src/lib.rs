@@ -21,6 +21,7 @@ pub mod block;
 mod block_page;
 pub mod chart;
 mod diagnosis_markdown;
+mod differences;
 pub mod doubts;
 pub mod left_out;
 mod markdown;

@@ -17,7 +17,7 @@ use diagnosis::{Report, Traces};
 use maud::{Markup, PreEscaped, html};
 
 use crate::shell::shell;
-use crate::words;
+use crate::{differences, words};
 use figures::Figures;
 use table::name;
 
@@ -87,9 +87,9 @@ impl<'a> Page<'a> {
             header {
                 p.eyebrow { "testbed diagnosis · " (name(&self.report.robot)) " · " (self.recordings_in_short()) }
                 @if let Some(changed) = words::changed(self.report) { p.lead { (changed) } }
-                @if let Some(load) = words::different_load(self.report) { p.lead { (load) } }
-                @if let Some(friction) = words::held_out_friction(self.report) { p.lead { (friction) } }
-                @if let Some(lag) = words::torque_lag(self.report) { p.lead { (lag) } }
+                @if let Some(load) = differences::different_load(self.report) { p.lead { (load) } }
+                @if let Some(friction) = differences::held_out_friction(self.report) { p.lead { (friction) } }
+                @if let Some(lag) = differences::torque_lag(self.report) { p.lead { (lag) } }
                 h1 { (words::verdict(self.report)) }
                 (self.lead())
             }

@@ -9,7 +9,7 @@ use diagnosis::statistics::rms;
 use diagnosis::{Finding, Located, NotObservable, Report, Unexplained};
 
 use crate::doubts::Certainty;
-use crate::{alternatives, doubts, next_words, not_diagnosed, numbers, regions, words};
+use crate::{alternatives, differences, doubts, next_words, not_diagnosed, numbers, regions, words};
 
 mod findings;
 pub(crate) mod steps;
@@ -95,7 +95,8 @@ pub fn complete(report: &Report, arm: &Arm) -> String {
 fn opening(report: &Report) -> String {
     let changed = words::changed(report).map(|text| wrapped(&text, ""));
     let mut text = changed.unwrap_or_default();
-    for sentence in [words::different_load(report), words::held_out_friction(report)].into_iter().flatten() {
+    for sentence in [differences::different_load(report), differences::held_out_friction(report)].into_iter().flatten()
+    {
         text += &wrapped(&sentence, "");
         text.push('\n');
     }

@@ -163,7 +163,7 @@ impl Request {
         for remark in &diagnosis.remarks {
             listener.note(remark);
         }
-        let without_lag = WithoutLag::new(&list, diagnosis.report.torque_lag.unwrap_or(0.0));
+        let without_lag = WithoutLag::of_report(&list, &diagnosis.report);
         let list = without_lag.of(&list);
         if !self.torques_only {
             let complete = validate::complete(&arm, &options.known, &diagnosis, &list, &|step| listener.doing(step))?;

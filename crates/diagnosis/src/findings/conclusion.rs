@@ -14,7 +14,7 @@ use super::observability::not_testable;
 use super::traces::traces;
 use super::verdict::{
     ask_for_motion, beyond_limits, known_too_large, moves_in_training, not_enough, poorly_predicted, unexplained,
-    verdict, with_places,
+    verdict, with_common_cause, with_places,
 };
 use super::{at_rest, dual_sensor, gaps, own_friction, sentences, transients};
 use crate::data::Data;
@@ -116,6 +116,7 @@ impl Conclusion {
             }
             with_places(&open, &mut unexplained);
         }
+        with_common_cause(&mut unexplained);
         ask_for_motion(last, &mut unexplained);
         findings.sort_by(|(a, _), (b, _)| {
             b.share.total_cmp(&a.share).then(a.effect.cmp(b.effect)).then(a.joint.cmp(&b.joint))
@@ -211,6 +212,7 @@ impl Conclusion {
             },
             cutoff: Some(motions.cutoff),
             torque_lag: None,
+            own_torque_lags: BTreeMap::new(),
             doubts: Vec::new(),
             warnings: Vec::new(),
             verdict: verdict(&findings, &self.unexplained, &self.not_enough_data),

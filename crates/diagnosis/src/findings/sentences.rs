@@ -292,6 +292,11 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
     }
 }
 
+/// The experiment for residuals of several joints that change with time.
+pub const TOGETHER_IN_TIME: &str = "the residuals of several joints change with time, as with a load that changes or a base that moves: repeat \
+    the motions without a load and with the base fixed, and then with the load; if they still change, repeat one motion every minute for ten \
+    minutes";
+
 /// The experiment for a residual that changes too quickly for the recordings, as where a link swings in a gap.
 pub fn look_behind_the_drive(joint: &str) -> String {
     format!(

@@ -13,8 +13,8 @@ use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplai
 use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, poor, structured, swinging};
 use crate::thresholds::{
-    LEAST_MOTION, LEAST_OF_ARM, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE,
-    STRUCTURED_IN_TRAINING, WITHOUT_KNOWN,
+    LEAST_MOTION, LEAST_OF_ARM, LEAST_WITH_COMMON_CAUSE, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED,
+    STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING, WITHOUT_KNOWN,
 };
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
@@ -149,6 +149,16 @@ pub fn known_too_large(
                 next: sentences::without_known(&joint.name, error, identified),
                 time: Vec::new(),
             });
+        }
+    }
+}
+
+/// Gives residuals of several joints that change with time one experiment: they have a cause in common.
+pub fn with_common_cause(unexplained: &mut [Unexplained]) {
+    let changes = |open: &Unexplained| open.depends_on.first() == Some(&Regressor::Time.into());
+    if unexplained.iter().filter(|open| changes(open)).count() >= LEAST_WITH_COMMON_CAUSE {
+        for open in unexplained.iter_mut().filter(|open| changes(open)) {
+            sentences::TOGETHER_IN_TIME.clone_into(&mut open.next);
         }
     }
 }

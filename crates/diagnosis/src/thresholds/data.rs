@@ -159,6 +159,13 @@ pub const LEAST_LAG_NATS: f64 = 30.0;
 /// The part of the evidence for a lag of each joint that may contradict a common lag. Source: as for [`LEAST_LAG_NATS`] (at most 0.001),
 /// and the recordings of an iiwa 14 (0.26) and a KR 300 (0.26), whose joints have different lags.
 pub const MOST_OF_LAG: f64 = 0.1;
+/// The shortest lag of a single recording beyond that of most others that is removed (s). Source: simulated cases, in which such lags had 8 to
+/// 37 ms, and the recordings of ten robots, which have none.
+pub const LEAST_OWN_LAG: f64 = 0.004;
+/// The shortest part of such a lag that is removed in addition to a first one (s). Source: as for [`LEAST_OWN_LAG`].
+pub const LEAST_MORE_OWN_LAG: f64 = 0.001;
+/// The least number of recordings of which one may have a lag of its own: of two, none is the usual one.
+pub const LEAST_WITH_OWN_LAG: usize = 3;
 /// The number of times that a lag is removed: the first estimate takes its effect as proportional to it.
 pub const MOST_LAGS: usize = 2;
 /// The times by which dry friction may turn round late beside a lag of all torques (s): two, because it approaches its level slowly. Source:

@@ -98,3 +98,22 @@ fn a_short_lag_does_not_change_viscous_friction() {
     assert!(holds && error < 0.02 * VISCOUS, "{error}");
     assert!(as_recorded > 2.0 * error, "{as_recorded} against {error}");
 }
+
+/// The torques of one file come from another clock. They are compared on that of the others, also by the simulation of the findings.
+#[test]
+fn a_lag_of_one_recording_is_removed_from_it_alone() {
+    let mut recordings: Vec<RegularRecording> = (0..4)
+        .map(|variant| regular(&recorded(&trio(), variant, 20.0, &|motion, tau| baseline_friction(motion, tau))))
+        .collect();
+    recordings[1] = recordings[1].without_torque_lag(-0.024);
+    let found = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let own = &found.report.own_torque_lags;
+    assert_eq!(own.keys().collect::<Vec<_>>(), ["b"], "{own:?}");
+    assert!((own["b"] - 0.024).abs() < 0.002, "{own:?}");
+    assert_eq!(found.report.torque_lag, None);
+    assert!(named(&found).is_empty(), "{:?}", sentences(&found));
+    assert!(found.remarks.iter().any(|remark| remark.contains("b: 24")), "{:?}", found.remarks);
+    let viscous = found.report.findings.iter().filter(|finding| finding.effect == "viscous_friction");
+    let sizes: Vec<f64> = viscous.map(|finding| finding.parameters["coefficient"].value).collect();
+    assert!(sizes.len() == 3 && sizes.iter().all(|size| (size - VISCOUS).abs() < 0.05 * VISCOUS), "{sizes:?}");
+}

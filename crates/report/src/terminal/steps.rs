@@ -55,7 +55,10 @@ fn residuals(report: &Report) -> Vec<String> {
             }
             several => {
                 let joints: Vec<String> = several.iter().map(|open| open.joint.clone()).collect();
-                format!("{}: unexplained residuals", words::list(&joints))
+                let on = several[0].depends_on.first();
+                let on = on.filter(|_| several.iter().all(|open| open.depends_on.first() == on));
+                let on = on.map_or_else(String::new, |on| format!(" that depend on {}", words::dependence(on)));
+                format!("{}: unexplained residuals{on}", words::list(&joints))
             }
         };
         match group[0].next.as_str() {

@@ -113,6 +113,7 @@ pub fn diagnosis(joints: usize, plot: Plot) -> (Report, Traces, Arm) {
         is_requested: false,
         cutoff: Some(12.0),
         torque_lag: None,
+        own_torque_lags: BTreeMap::new(),
         verdict: match plot {
             Plot::Clean => Verdict::NoMismatch,
             Plot::Rich => Verdict::PartlyExplained,

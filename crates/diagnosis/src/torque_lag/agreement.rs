@@ -1,0 +1,70 @@
+//! Whether joints agree on one lag.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::thresholds::{LEAST_LAG_NATS, LEAST_LAGGING, MOST_OF_LAG};
+
+/// The value that several estimates have in common, by generalised least squares.
+pub struct Common {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// vᵀ C⁻¹ v of the estimates v with covariance C: the part that the common value explains,
+    pub explained: f64,
+    /// and the rest.
+    misfit: f64,
+}
+
+impl Common {
+    /// That of the estimates `chosen` among `values`; `None` if their covariance is singular.
+    pub fn of(values: &DVector<f64>, covariance: &DMatrix<f64>, chosen: &[usize]) -> Option<Self> {
+        let values = values.select_rows(chosen);
+        let information = covariance.select_rows(chosen).select_columns(chosen).try_inverse()?;
+        let weighted = &information * &values;
+        let weight = information.sum();
+        let value = weighted.sum() / weight;
+        let explained = value * weighted.sum();
+        Some(Self {
+            value,
+            deviation: weight.sqrt().recip(),
+            explained,
+            misfit: (values.dot(&weighted) - explained).max(0.0),
+        })
+    }
+
+    /// Whether hardly anything contradicts it.
+    fn is_shared(&self) -> bool {
+        self.misfit <= MOST_OF_LAG * (self.misfit + self.explained)
+    }
+
+    /// That of most of the `values`, with these: a joint may have a lag of its own. `None` if most do not agree.
+    pub fn of_most(values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<(Self, Vec<usize>)> {
+        let count = values.len();
+        let mut agreeing: Vec<usize> = (0..count).collect();
+        loop {
+            let common = Self::of(values, covariance, &agreeing)?;
+            if common.is_shared() {
+                return Some((common, agreeing));
+            }
+            let without =
+                |&joint: &usize| -> Vec<usize> { agreeing.iter().copied().filter(|&other| other != joint).collect() };
+            let fewer = agreeing.iter().map(without);
+            let fewer = fewer.filter_map(|fewer| Some((Self::of(values, covariance, &fewer)?.misfit, fewer)));
+            agreeing = fewer.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+            if agreeing.len() < LEAST_LAGGING || 2 * agreeing.len() <= count {
+                return None;
+            }
+        }
+    }
+
+    /// Whether it is seen without each of the values that agree on it: one joint alone may have any delay.
+    pub fn is_seen_without_each(&self, values: &DVector<f64>, covariance: &DMatrix<f64>, agreeing: &[usize]) -> bool {
+        agreeing.iter().all(|joint| {
+            let others: Vec<usize> = agreeing.iter().copied().filter(|other| other != joint).collect();
+            Self::of(values, covariance, &others).is_some_and(|rest| {
+                rest.is_shared() && rest.value * self.value > 0.0 && 0.5 * rest.explained >= LEAST_LAG_NATS
+            })
+        })
+    }
+}
