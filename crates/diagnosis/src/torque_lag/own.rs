@@ -12,22 +12,29 @@ use super::agreement::Common;
 use crate::data::input::Input;
 use crate::data::statistics::{mean_square, median};
 use crate::selection::FinalFit;
-use crate::thresholds::{LEAST_LAG_NATS, LEAST_MORE_OWN_LAG, LEAST_OWN_LAG, LEAST_WITH_OWN_LAG};
+use crate::thresholds::{LEAST_LAG_NATS, LEAST_LAGGING, LEAST_MORE_OWN_LAG, LEAST_OWN_LAG, LEAST_WITH_OWN_LAG};
+
+/// The lag of a recording beyond that of the fit.
+struct Residual {
+    common: Common,
+    /// Whether it is seen without each of the joints that agree on it.
+    is_seen: bool,
+}
 
 /// The lags (s) that single recordings have beyond that of most others, in addition to those that were `removed` from them, one per
 /// recording; `None` if no recording has another one.
 pub fn own_lags(last: &FinalFit, removed: &[f64]) -> Option<Vec<f64>> {
     let lagging = Lagging::of(last)?;
     let recordings = last.study.data.motions.sources.len();
-    let all: Vec<Option<Common>> = (0..recordings).map(|recording| lagging.common_in(last, recording)).collect();
-    let known: Vec<f64> = all.iter().flatten().map(|common| common.value).collect();
+    let all: Vec<Option<Residual>> = (0..recordings).map(|recording| lagging.common_in(last, recording)).collect();
+    let known: Vec<f64> = all.iter().flatten().map(|lag| lag.common.value).collect();
     if known.len() < LEAST_WITH_OWN_LAG {
         // Of two recordings, none is the usual one.
         return None;
     }
     let usual = median(known);
-    let own = |(recording, common): (usize, &Option<Common>)| {
-        let Some(common) = common else { return 0.0 };
+    let own = |(recording, lag): (usize, &Option<Residual>)| {
+        let Some(Residual { common, .. }) = lag.as_ref().filter(|lag| lag.is_seen) else { return 0.0 };
         let lag = UNIT_LAG * (common.value - usual);
         let has_some = removed.get(recording).is_some_and(|removed| *removed != 0.0);
         let least = if has_some { LEAST_MORE_OWN_LAG } else { LEAST_OWN_LAG };
@@ -40,11 +47,13 @@ pub fn own_lags(last: &FinalFit, removed: &[f64]) -> Option<Vec<f64>> {
 
 impl Lagging {
     /// The lag (in [`UNIT_LAG`]) beyond that of the fit that the residuals of most joints show in a recording, if they agree on one.
-    fn common_in(&self, last: &FinalFit, recording: usize) -> Option<Common> {
+    fn common_in(&self, last: &FinalFit, recording: usize) -> Option<Residual> {
         let of = |&joint: &usize| self.of_joint(last, recording, joint);
         let (lags, variances): (Vec<f64>, Vec<f64>) = self.joints.iter().filter_map(of).unzip();
         let (lags, covariance) = (DVector::from_vec(lags), DMatrix::from_diagonal(&DVector::from_vec(variances)));
-        Some(Common::of_most(&lags, &covariance)?.0)
+        let (common, agreeing) = Common::of_most(&lags, &covariance)?;
+        let are_enough = agreeing.len() >= LEAST_LAGGING && 2 * agreeing.len() > self.joints.len();
+        are_enough.then_some(Residual { is_seen: common.is_seen_without_each(&lags, &covariance, &agreeing), common })
     }
 
     /// The lag of a joint in a recording and its variance: the residual regressed on the torque's change, beside friction of the
