@@ -39,13 +39,11 @@ impl LinkSide {
         let (mass, drag, slope) =
             (&rigid.mass[joint][at], &rigid.by_velocity[joint][at], &rigid.by_position[joint][at]);
         let rotor = if joint == at { rigid.rotor(joint) } else { 0.0 };
-        self.ticks
-            .iter()
-            .enumerate()
-            .map(|(k, [delta, speed, acceleration])| {
-                (mass[k] - rotor) * acceleration + drag[k] * speed + slope[k] * delta
-            })
-            .collect()
+        // Without indices, nothing has to be checked, and the loop runs in vectors.
+        let torque = |(((mass, drag), slope), [delta, speed, acceleration]): (((&f64, &f64), &f64), &[f64; 3])| {
+            (mass - rotor) * acceleration + drag * speed + slope * delta
+        };
+        mass.iter().zip(drag).zip(slope).zip(&self.ticks).map(torque).collect()
     }
 }
 

@@ -163,9 +163,23 @@ pub static WITHOUT_MOMENTS: Law = Law {
 /// the mass and of the other moments. With axes that are vertical to the digits of a URDF, the height of a body and most of its moments
 /// of inertia would be fitted to noise, and no body would have them.
 fn felt(columns: &[Vec<f64>], parameter: usize, column: &[f64]) -> Vec<f64> {
-    let largest = |column: &[f64]| column.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
-    let scale = columns[..10].iter().map(|column| largest(column)).fold(0.0, f64::max);
-    if parameter > 0 && largest(column) < LEAST_FELT * scale { vec![0.0; column.len()] } else { column.to_vec() }
+    let scale = || columns[..10].iter().map(|column| largest(column)).fold(0.0, f64::max);
+    if parameter > 0 && largest(column) < LEAST_FELT * scale() { vec![0.0; column.len()] } else { column.to_vec() }
+}
+
+/// The largest magnitude of a column: several maxima side by side, so that none waits for the one before it.
+fn largest(column: &[f64]) -> f64 {
+    const SIDE_BY_SIDE: usize = 16;
+    let larger = |largest: f64, torque: f64| if torque.abs() > largest { torque.abs() } else { largest };
+    let mut all = [0.0; SIDE_BY_SIDE];
+    let groups = column.chunks_exact(SIDE_BY_SIDE);
+    let rest = groups.remainder().iter().fold(0.0, |most, &torque| larger(most, torque));
+    for group in groups {
+        for (most, &torque) in all.iter_mut().zip(group) {
+            *most = larger(*most, torque);
+        }
+    }
+    all.into_iter().fold(rest, larger)
 }
 
 /// A body that the URDF fixes to the last link and that is not mounted.
