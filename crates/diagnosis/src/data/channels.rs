@@ -1,6 +1,5 @@
 //! Detects torque channels without a torque: dead and idle channels, other quantities, other signals.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use effects::{Scales, sign};
@@ -83,6 +82,10 @@ pub fn without_torque(
     list.into_iter().filter(|one| !stays(one)).collect()
 }
 
+/// The first samples that are counted, as a multiple of those that a coarse channel may leave out. Source: nearly all of them are left
+/// out by the most frequent values of a channel that is not coarse.
+const COUNTED_FIRST: f64 = 3.0;
+
 /// Whether most samples in motion have one value, or nearly all have few.
 fn idle_or_coarse(inputs: &[Input<'_>], joint: usize) -> Option<Why> {
     let speed = |input: &Input<'_>, tick: usize| {
@@ -93,26 +96,50 @@ fn idle_or_coarse(inputs: &[Input<'_>], joint: usize) -> Option<Why> {
     let fitted = || inputs.iter().filter(|input| !input.held_out);
     let largest = fitted().flat_map(|input| ticks(input).map(move |tick| speed(input, tick)));
     let least = CHANNEL_MOVES * largest.fold(0.0, f64::max);
-    let mut counts: HashMap<u64, usize> = HashMap::new();
-    let mut all = 0;
-    for input in fitted() {
-        for tick in ticks(input).filter(|&tick| speed(input, tick) > least) {
-            // −0 equals 0.
-            *counts.entry((input.recording.tau[joint][tick] + 0.0).to_bits()).or_default() += 1;
-            all += 1;
-        }
-    }
+    // −0 equals 0.
+    let bits = |input: &Input<'_>, tick: usize| (input.recording.tau[joint][tick] + 0.0).to_bits();
+    let moving = |input: &Input<'_>| ticks(input).filter(|&tick| speed(input, tick) > least).collect::<Vec<usize>>();
+    let mut values: Vec<u64> =
+        fitted().flat_map(|input| moving(input).into_iter().map(|tick| bits(input, tick))).collect();
+    let all = values.len();
     if all < LEAST_CHANNEL_ROWS {
         return None;
     }
-    let mut counts: Vec<usize> = counts.into_values().collect();
-    counts.sort_unstable_by(|a, b| b.cmp(a));
+    if !may_be_few(&values) {
+        return None;
+    }
+    let counts = counts(&mut values);
     let part = |values: usize| counts.iter().take(values).sum::<usize>() as f64 / all as f64;
     if part(1) > IDLE_CHANNEL {
         return Some(Why::Idle(part(1)));
     }
     let values = (1..=counts.len()).find(|&values| part(values) > COARSE_PART)?;
     (values <= COARSE_CHANNEL).then_some(Why::Coarse(values))
+}
+
+/// How often each value occurs, the most frequent first.
+fn counts(values: &mut [u64]) -> Vec<usize> {
+    values.sort_unstable();
+    let mut counts: Vec<usize> = values.chunk_by(|a, b| a == b).map(<[u64]>::len).collect();
+    counts.sort_unstable_by(|a, b| b.cmp(a));
+    counts
+}
+
+/// Whether a channel with these values may be idle or coarse: a test without sorting all of them. A value of more than half of all wins
+/// a vote in which different values cancel each other, and what few values leave out of the first samples, they leave out of all.
+fn may_be_few(values: &[u64]) -> bool {
+    let all = values.len() as f64;
+    let vote = |(winner, votes): (u64, usize), &value: &u64| match votes {
+        0 => (value, 1),
+        _ if winner == value => (winner, votes + 1),
+        _ => (winner, votes - 1),
+    };
+    let (winner, _) = values.iter().fold((0, 0), vote);
+    let is_idle = values.iter().filter(|&&value| value == winner).count() as f64 > IDLE_CHANNEL * all;
+    let first = ((COUNTED_FIRST * (1.0 - COARSE_PART) * all).ceil() as usize).min(values.len());
+    let counts = counts(&mut values[..first].to_vec());
+    let left_out: usize = counts.iter().skip(COARSE_CHANNEL).sum();
+    is_idle || all - left_out as f64 >= COARSE_PART * all
 }
 
 /// The moving rows of a joint in the training recordings.
