@@ -64,7 +64,7 @@ pub fn agreement(
         only: Some(OMITTED_BY_MOST.iter().flat_map(wanted).collect()),
         ..Options::default()
     };
-    // What is compared needs no derivatives of the model, but known effects may.
+    // What is compared needs only the torques and masses of the model, but known effects may need more.
     let data = Data::before_a_correction(arm, inputs, &options, !known.is_empty())?;
     let mut study = Study::new(data, &options).with_any_own_load(&options);
     // Forms of friction in the background have no sign, and may drive a joint.

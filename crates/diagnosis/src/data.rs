@@ -63,7 +63,7 @@ enum Reading {
     Settled,
     /// With or without a correction, which is weighed.
     Weighed {
-        /// Whether derivatives of the model are evaluated.
+        /// Whether all of the model is evaluated, or only its torques and mass matrix.
         derivatives: bool,
     },
 }
@@ -78,8 +78,8 @@ impl Data {
     }
 
     /// As [`Data::new`], but a torque channel that contradicts the model counts as a torque: the recordings may be read wrongly, and
-    /// with and without a correction the same joints must be compared. Without `derivatives`, the model's derivatives by
-    /// positions and velocities, which offsets of encoders and compliant joints need, are zero.
+    /// with and without a correction the same joints must be compared. Without `derivatives`, only the torques of
+    /// the model and its mass matrix are evaluated; all else, such as what encoders' offsets and compliant joints need, is zero.
     ///
     /// # Errors
     /// As for [`Data::new`].
@@ -107,10 +107,13 @@ impl Data {
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
         let by_model = reading == Reading::Settled;
-        let derivatives = !matches!(reading, Reading::Weighed { derivatives: false });
+        let needed = match reading {
+            Reading::Weighed { derivatives: false } => rigid::Needed::Dynamics,
+            _ => rigid::Needed::All,
+        };
         let chunks = motions.chunks.par_iter();
         let rigid: Vec<rigid::Rigid> =
-            chunks.map(|chunk| rigid::Rigid::with_derivatives(arm, &nominal, &offset, chunk, derivatives)).collect();
+            chunks.map(|chunk| rigid::Rigid::with(arm, &nominal, &offset, chunk, needed)).collect();
         let mut scales = measure::scales(&motions, torque);
         known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);
         for (chunk, recorded) in motions.chunks.iter_mut().zip(&recorded) {

@@ -9,6 +9,17 @@ use nalgebra::{Matrix6xX, Vector3};
 use crate::data::motion::Chunk;
 use crate::data::turning_base;
 
+/// What is evaluated along a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needed {
+    /// Everything.
+    All,
+    /// All but ∂τ/∂q and ∂τ/∂q̇, which stay zero.
+    WithoutDerivatives,
+    /// τ and the mass matrix; all other signals stay zero.
+    Dynamics,
+}
+
 /// Signals on the ticks of one chunk. The first index is the joint, the last one the tick.
 #[derive(Clone, Debug, Default)]
 pub struct Rigid {
@@ -52,7 +63,7 @@ impl Rigid {
     /// Evaluates `arm` along `chunk`, with joints that are `offset` (rad or m) beyond their encoders. The links' shares are
     /// those of links with the inertial parameters `nominal`.
     pub fn new(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk) -> Self {
-        Self::with_derivatives(arm, nominal, offset, chunk, true)
+        Self::with(arm, nominal, offset, chunk, Needed::All)
     }
 
     /// `chunk`, to which this belongs, as regressors see it.
@@ -161,8 +172,8 @@ impl Rigid {
             .chain(by_axis.into_iter().flatten().flatten())
     }
 
-    /// Evaluates as [`Self::new`] does; without `derivatives`, ∂τ/∂q and ∂τ/∂q̇ stay zero.
-    pub fn with_derivatives(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, derivatives: bool) -> Self {
+    /// Evaluates what is `needed` as [`Self::new`] does.
+    pub fn with(arm: &Arm, nominal: &[f64], offset: &[f64], chunk: &Chunk, needed: Needed) -> Self {
         let n = arm.dof();
         let ticks = chunk.ticks();
         let zeros = || vec![0.0; ticks];
@@ -202,29 +213,8 @@ impl Rigid {
             for joint in 0..n {
                 rigid.tau[joint][span.clone()].copy_from_slice(&tau[joint * count..(joint + 1) * count]);
             }
-            let mut regressor = vec![0.0; len * PARAMETERS_PER_LINK * n];
-            arm.torque_regressor_batch(q, qd, qdd, &mut regressor);
-            for joint in 0..n {
-                let at = |column: usize, k: usize| regressor[(column * n + joint) * count + k];
-                for link in joint..n {
-                    let from = link * PARAMETERS_PER_LINK;
-                    for (k, tick) in span.clone().enumerate() {
-                        let parameters = from..from + PARAMETERS_PER_LINK;
-                        rigid.links[joint][link][tick] = parameters.map(|column| at(column, k) * nominal[column]).sum();
-                    }
-                }
-                let last = (n - 1) * PARAMETERS_PER_LINK;
-                for (body, parameters) in bodies.iter().enumerate() {
-                    for (k, tick) in span.clone().enumerate() {
-                        rigid.fixed_bodies[joint][body][tick] = (0..10).map(|l| at(last + l, k) * parameters[l]).sum();
-                    }
-                }
-                for parameter in 0..10 {
-                    for (k, tick) in span.clone().enumerate() {
-                        rigid.payload[joint][parameter][tick] =
-                            (0..10).map(|l| at(last + l, k) * to_link[l][parameter]).sum();
-                    }
-                }
+            if needed != Needed::Dynamics {
+                rigid.set_shares(arm, &states, (&span, nominal), &bodies, &to_link);
             }
             let store = |to: &mut [Vec<Vec<f64>>], values: &[f64]| {
                 for joint in 0..n {
@@ -235,13 +225,16 @@ impl Rigid {
                 }
             };
             let (mut first, mut second) = (vec![0.0; len * n], vec![0.0; len * n]);
-            if derivatives {
+            if needed == Needed::All {
                 arm.inverse_dynamics_derivatives_batch(q, qd, qdd, &mut first, &mut second);
                 store(&mut rigid.by_position, &first);
                 store(&mut rigid.by_velocity, &second);
             }
             arm.mass_matrix_batch(q, &mut first);
             store(&mut rigid.mass, &first);
+            if needed == Needed::Dynamics {
+                continue;
+            }
             let still = vec![0.0; len];
             for (axis, along) in along.iter().enumerate() {
                 along.inverse_dynamics_batch(q, &still, &still, &mut tau);
@@ -250,6 +243,9 @@ impl Rigid {
                     rigid.gravity[joint][axis][span.clone()].copy_from_slice(pull);
                 }
             }
+        }
+        if needed == Needed::Dynamics {
+            return rigid;
         }
         let mut workspace = Workspace::new(arm);
         let tool = arm.tool_frame();
@@ -278,6 +274,41 @@ impl Rigid {
             }
         }
         rigid
+    }
+
+    /// Sets, on a `span` of ticks with these `states`, the torques of links with the inertial parameters `nominal`, of fixed `bodies` and
+    /// of a payload, whose parameters `to_link` brings to the last link.
+    fn set_shares(
+        &mut self,
+        arm: &Arm,
+        states: &Along,
+        (span, nominal): (&Range<usize>, &[f64]),
+        bodies: &[[f64; 10]],
+        to_link: &[[f64; 10]; 10],
+    ) {
+        let (n, count) = (self.tau.len(), span.len());
+        let mut regressor = vec![0.0; states.q.len() * PARAMETERS_PER_LINK * n];
+        arm.torque_regressor_batch(&states.q, &states.qd, &states.qdd, &mut regressor);
+        // Column by column, so that the loops run along the ticks.
+        let add = |to: &mut [f64], joint: usize, link: usize, parameters: &[f64]| {
+            for (k, parameter) in parameters.iter().enumerate() {
+                let from = ((link * PARAMETERS_PER_LINK + k) * n + joint) * count;
+                let column = &regressor[from..from + count];
+                to.iter_mut().zip(column).for_each(|(sum, value)| *sum += value * parameter);
+            }
+        };
+        for joint in 0..n {
+            for (link, parameters) in nominal.chunks_exact(PARAMETERS_PER_LINK).enumerate().skip(joint) {
+                add(&mut self.links[joint][link][span.clone()], joint, link, parameters);
+            }
+            for (body, parameters) in bodies.iter().enumerate() {
+                add(&mut self.fixed_bodies[joint][body][span.clone()], joint, n - 1, parameters);
+            }
+            for parameter in 0..PARAMETERS_PER_LINK {
+                let parameters = to_link.map(|of_link| of_link[parameter]);
+                add(&mut self.payload[joint][parameter][span.clone()], joint, n - 1, &parameters);
+            }
+        }
     }
 
     /// The torque on each joint per unit of each inertial parameter of each link, on the rows of `chunk`:

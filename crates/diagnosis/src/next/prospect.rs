@@ -5,7 +5,7 @@ use torque::{Motion, Reference};
 
 use super::designs::DURATION;
 use crate::data::motion::{Chunk, Motions};
-use crate::data::rigid::Rigid;
+use crate::data::rigid::{Needed, Rigid};
 use crate::data::signal::Kernel;
 use crate::findings::observability::Visibility;
 use crate::regression::columns::values;
@@ -40,8 +40,8 @@ pub struct Prospect<'a> {
     bare: Table,
     old: Products,
     template: usize,
-    /// Whether a column needs derivatives of the rigid torque.
-    derivatives: bool,
+    /// What the columns need of the rigid model.
+    needed: Needed,
     /// The time between ticks of a motion (s), the filter on that grid, and the number of ticks between rows.
     grid: (f64, Kernel, usize),
     /// The time at which the motion begins (s).
@@ -91,7 +91,7 @@ impl<'a> Prospect<'a> {
             last,
             about: About::last(data, table, fit, &last.study.load_tensor),
             nominal: data.arm.inertial_parameters(),
-            derivatives: terms.iter().any(needs),
+            needed: if terms.iter().any(needs) { Needed::All } else { Needed::WithoutDerivatives },
             grid: (period, Kernel::new(data.motions.cutoff, period), stride),
             bare: Table::bare(terms, dof),
             old: last.products.picked(table, &columns),
@@ -118,8 +118,8 @@ impl<'a> Prospect<'a> {
         let (data, thresholds) = (&self.last.study.data, &self.last.study.thresholds);
         let (dof, fit) = (data.motions.dof, &self.last.judged.named.fit);
         let mut chunk = self.chunk(reference);
-        let (About { arm, offset, .. }, derivatives) = (&self.about, self.derivatives);
-        let rigid = Rigid::with_derivatives(arm, &self.nominal, offset, &chunk, derivatives);
+        let About { arm, offset, .. } = &self.about;
+        let rigid = Rigid::with(arm, &self.nominal, offset, &chunk, self.needed);
         self.add_torques(&mut chunk, &rigid);
         let largest = chunk.tau.iter().map(|tau| tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs())));
         let largest = largest.collect();
