@@ -116,6 +116,15 @@ impl Eliminated {
         of(b, a).or_else(|| of(a, b))
     }
 
+    /// Reads the products of the columns of a group with `other`; whether all of them are stored.
+    fn stored(&self, group: &[usize], other: usize, products: &mut Lanes) -> bool {
+        group.iter().zip(products).all(|(&column, product)| {
+            let bits = self.place(column, other).map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
+            *product = f64::from_bits(bits);
+            bits != NOT_FORMED
+        })
+    }
+
     /// The background's coefficients for `values` of the selected `columns`.
     pub fn coefficients(&self, products: &Products, table: &Table, columns: &[usize], values: &[f64]) -> Vec<f64> {
         let mut solution = self.with_y.clone();
@@ -231,17 +240,23 @@ impl Products {
         group: &[usize],
         others: &[usize],
     ) -> Vec<Lanes> {
-        let columns = self.in_lanes(table, eliminated, group);
         let Some(background) = self.background.as_deref() else {
             return Vec::new();
         };
-        let with = |&other: &usize| eliminated.with_column(self, table, background, other);
-        let rows: Vec<&[f64]> = others.iter().map(with).collect();
-        let mut products = dots_of(&rows, &columns);
-        for (row, &other) in products.iter_mut().zip(others) {
-            for (value, &column) in row.iter_mut().zip(group) {
-                *value = self.product(table, &eliminated.scaled, column, Some(other)) - *value;
-                if let Some(place) = eliminated.place(column, other) {
+        let mut products = vec![[0.0; LANES]; others.len()];
+        let is_missing = |&k: &usize| !eliminated.stored(group, others[k], &mut products[k]);
+        let missing: Vec<usize> = (0..others.len()).filter(is_missing).collect();
+        if missing.is_empty() {
+            return products;
+        }
+        let columns = self.in_lanes(table, eliminated, group);
+        let with = |&k: &usize| eliminated.with_column(self, table, background, others[k]);
+        let rows: Vec<&[f64]> = missing.iter().map(with).collect();
+        for (&k, explained) in missing.iter().zip(dots_of(&rows, &columns)) {
+            for (lane, &column) in group.iter().enumerate() {
+                let value = self.product(table, &eliminated.scaled, column, Some(others[k])) - explained[lane];
+                products[k][lane] = value;
+                if let Some(place) = eliminated.place(column, others[k]) {
                     place.store(value.to_bits(), Ordering::Relaxed);
                 }
             }
