@@ -16,7 +16,7 @@ mod left_out;
 
 pub use added::Reduced;
 use eliminated::Eliminated;
-pub use left_out::LeftOut;
+pub use left_out::{ArmLeftOut, LeftOut};
 
 /// The ridge, relative to the diagonal, so that collinear columns share a torque.
 const RIDGE: f64 = 1e-9;

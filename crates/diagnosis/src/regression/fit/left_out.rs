@@ -6,6 +6,10 @@ use super::{Products, RIDGE, cholesky, solved};
 use crate::regression::table::{Stretch, Table};
 use crate::thresholds::RECORDING_GROUPS;
 
+mod arm;
+
+pub use arm::ArmLeftOut;
+
 /// A fit on one joint, and the fits without each group of recordings in turn (cross-validation), to which columns are
 /// added.
 pub struct LeftOut<'a> {
@@ -68,57 +72,6 @@ impl Products {
         let (_, rss) = fitted(&folds, &base.prior, |gram, k| base.fits[k].with(gram, with.len(), &base.prior));
         let gain = |k: usize| self.joint_loss(base.joint, base.rss[k]) - self.joint_loss(base.joint, rss[k]);
         (gain(0), gain(1))
-    }
-
-    /// The gain of `added` columns that act on several joints where they were not fitted (nats); `weights` are those of the
-    /// joints.
-    pub fn arm_gain(&self, table: &Table, columns: &[usize], added: &[usize], weights: &[f64]) -> f64 {
-        let mut all: Vec<usize> = columns.to_vec();
-        all.extend(added.iter().filter(|column| !columns.contains(column)));
-        // The columns of each joint, with their inner products over each group.
-        let joints: Vec<(Vec<usize>, Vec<DMatrix<f64>>)> = (0..table.dof())
-            .map(|joint| {
-                let mine: Vec<usize> = (0..all.len()).filter(|&i| table.place[joint][all[i]].is_some()).collect();
-                let places: Vec<usize> = mine.iter().filter_map(|&i| table.place[joint][all[i]]).collect();
-                let groups = self.groups(table, joint, true);
-                let folds = groups.iter().map(|group| gram(group, &places)).collect();
-                (mine, folds)
-            })
-            .collect();
-        let count = joints.iter().map(|(_, folds)| folds.len()).max().unwrap_or(0);
-        if count < 2 {
-            return 0.0;
-        }
-        let prior = self.prior(|_| true, 1.0);
-        let weights = self.evidence_weights(weights);
-        let outside = |p: usize| -> f64 {
-            let mut rss = vec![0.0; joints.len()];
-            for fold in 0..count {
-                let mut gram = DMatrix::<f64>::zeros(p + 1, p + 1);
-                for ((mine, folds), weight) in joints.iter().zip(&weights) {
-                    let at = |k: usize| mine.get(k).copied().unwrap_or(p);
-                    for other in (0..folds.len()).filter(|&other| other != fold) {
-                        for i in (0..=mine.len()).filter(|&i| i == mine.len() || mine[i] < p) {
-                            for k in (0..=mine.len()).filter(|&k| k == mine.len() || mine[k] < p) {
-                                gram[(at(i), at(k))] += weight * folds[other][(i, k)];
-                            }
-                        }
-                    }
-                }
-                let solved = Normal::new(&gram, p, &prior).solution(&gram, &prior);
-                for ((mine, folds), rss) in joints.iter().zip(&mut rss) {
-                    if let Some(gram) = folds.get(fold) {
-                        let own = DVector::from_iterator(
-                            mine.len(),
-                            mine.iter().map(|&i| if i < p { solved[i] } else { 0.0 }),
-                        );
-                        *rss += residual_square(gram, &own);
-                    }
-                }
-            }
-            self.loss(&rss)
-        };
-        outside(columns.len()) - outside(all.len())
     }
 
     /// The prior of the background's columns that `acts` selects, where sums of squares are weighted by `scale`.

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::{DOES_NOT_PAY, IMPOSSIBLE, Problem, Selection};
-use crate::regression::fit::LeftOut;
+use crate::regression::fit::{ArmLeftOut, LeftOut};
 use crate::search::candidate::Hypothesis;
 use crate::thresholds::{FITTED_AT_ONCE, FORMS_AT_ONCE, MOST_BATCHES, MOST_PROMISING};
 
@@ -36,6 +36,14 @@ impl Growth {
         let rest = candidates.split_off(candidates.len().min(unknown + MOST_PROMISING));
         (candidates, rest)
     }
+}
+
+/// The fits of a selection to which candidates are added, each computed once.
+struct Bases<'a> {
+    /// On each joint.
+    joints: Vec<OnceLock<LeftOut<'a>>>,
+    /// On all joints together.
+    arm: OnceLock<ArmLeftOut<'a>>,
 }
 
 impl Problem<'_> {
@@ -92,8 +100,7 @@ impl Problem<'_> {
             .collect();
         turns.sort_by_key(|&(turn, _)| turn);
         let mut waiting = turns.into_iter().map(|(_, candidate)| candidate);
-        // The fit to which the candidates of a joint are added is computed once.
-        let bases: Vec<OnceLock<LeftOut<'_>>> = (0..self.table.dof()).map(|_| OnceLock::new()).collect();
+        let bases = Bases { joints: (0..self.table.dof()).map(|_| OnceLock::new()).collect(), arm: OnceLock::new() };
         for _ in 0..MOST_BATCHES {
             let mut batch = Vec::with_capacity(FITTED_AT_ONCE);
             while batch.len() < FITTED_AT_ONCE {
@@ -150,9 +157,8 @@ impl Problem<'_> {
         None
     }
 
-    /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `selected` on
-    /// the joints.
-    fn predicts<'a>(&'a self, selected: &'a Selection, candidate: usize, bases: &[OnceLock<LeftOut<'a>>]) -> bool {
+    /// Whether `candidate` improves the prediction of recordings that it was not fitted to. `bases` are the fits of `selected`.
+    fn predicts<'a>(&'a self, selected: &'a Selection, candidate: usize, bases: &Bases<'a>) -> bool {
         let candidate = &self.candidates[candidate];
         if candidate.hypothesis.spec().may_be_in_one_recording
             || candidate.hypothesis.spec().is_baseline
@@ -161,15 +167,16 @@ impl Problem<'_> {
             return true;
         }
         let columns = &selected.fit.columns;
+        let weights = &selected.fit.weights;
         let on_the_arm = || {
-            let weights = &selected.fit.weights;
-            self.products.arm_gain(self.table, columns, &candidate.columns, weights) > 0.0
+            let base = bases.arm.get_or_init(|| self.products.arm_left_out(self.table, columns, weights));
+            self.products.arm_gain(self.table, base, &candidate.columns) > 0.0
         };
         let Some(joint) = candidate.joint else {
             return on_the_arm();
         };
-        let fit = || self.products.left_out(self.table, joint, columns, &selected.fit.weights);
-        let base = bases[joint].get_or_init(fit);
+        let fit = || self.products.left_out(self.table, joint, columns, weights);
+        let base = bases.joints[joint].get_or_init(fit);
         let (inside, outside) = self.products.gains(self.table, base, &candidate.columns);
         let needed = if candidate.hypothesis.name().is_none() { self.thresholds.predicted * inside } else { 0.0 };
         // A coupling acts on two joints, and may show on the other one. Unmodelled forms of another joint's motion act on one.
