@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::regression::background::Background;
-use crate::regression::table::{Gram, Table};
+use crate::regression::table::{Gram, JointTable, Table};
 use crate::thresholds::{EVIDENCE_PER_PERIOD, EVIDENCE_RATE, MOST_EVIDENCE_RATE};
 
 mod added;
@@ -108,16 +108,12 @@ impl Products {
     /// each joint's motion (Hz).
     pub fn new(table: &Table, selected: impl Fn(usize) -> bool, seconds: &[f64], tempo: &[f64], floor: &[f64]) -> Self {
         let recordings: Vec<usize> = (0..table.rows.len()).filter(|&r| selected(r)).collect();
-        let sum = |joint: usize| -> Gram {
-            let this = &table.joints[joint];
-            let selected = this.stretches.iter().filter(|stretch| recordings.contains(&stretch.recording));
-            Gram::sum(this.x.len(), selected.map(|stretch| &stretch.gram))
-        };
+        let gram = sums(table, &recordings, vec![Gram::default(); table.dof()]);
         let over = |joint: usize, weight: &dyn Fn(usize) -> f64| -> f64 {
             recordings.iter().map(|&r| table.joints[joint].count[r] as f64 * weight(r)).sum()
         };
         Self {
-            gram: Arc::new((0..table.dof()).map(sum).collect()),
+            gram: Arc::new(gram),
             count: (0..table.dof()).map(|joint| over(joint, &|_| 1.0)).collect(),
             evidence: (0..table.dof())
                 .map(|joint| over(joint, &|r| seconds[r] * evidence_rate(tempo[joint])))
@@ -127,6 +123,13 @@ impl Products {
             background: None,
             eliminated: Arc::default(),
         }
+    }
+
+    /// These products, without background, of `table` after columns were added to it.
+    pub fn with_columns_added(self, table: &Table) -> Self {
+        let known = Arc::unwrap_or_clone(self.gram);
+        let gram = sums(table, &self.recordings, known);
+        Self { gram: Arc::new(gram), background: None, eliminated: Arc::default(), ..self }
     }
 
     /// These products with another background.
@@ -317,6 +320,15 @@ impl Products {
             eliminated,
         }
     }
+}
+
+/// Inner products over `recordings`, one per joint; `known` are those of the first columns.
+fn sums(table: &Table, recordings: &[usize], known: Vec<Gram>) -> Vec<Gram> {
+    let sum = |(this, known): (&JointTable, Gram)| {
+        let selected = this.stretches.iter().filter(|stretch| recordings.contains(&stretch.recording));
+        Gram::sum(known, this.x.len(), selected.map(|stretch| &stretch.gram))
+    };
+    table.joints.iter().zip(known).map(sum).collect()
 }
 
 /// L⁻¹ b and (L Lᵀ)⁻¹ b for a lower Cholesky factor L and a right-hand side b.

@@ -8,7 +8,7 @@ use effects::background::OWN_LOAD;
 use effects::{LinkSide, Scales, Term};
 use rayon::prelude::*;
 
-use crate::data::motion::Motions;
+use crate::data::motion::{Chunk, Motions};
 use crate::data::rigid::Rigid;
 use crate::data::statistics::deviation;
 use crate::regression::bodies;
@@ -59,6 +59,8 @@ pub struct Table {
     pub rows: Vec<Range<usize>>,
     /// Another one whenever inner products change.
     identity: Arc<()>,
+    /// The same one as long as columns are only added.
+    origin: Arc<()>,
 }
 
 impl Table {
@@ -128,8 +130,7 @@ impl Table {
                 JointTable { y, x: Vec::new(), moving: moves, stretches, count }
             })
             .collect();
-        let mut table =
-            Self { terms: Vec::new(), place: vec![Vec::new(); motions.dof], joints, rows, identity: Arc::default() };
+        let mut table = Self { place: vec![Vec::new(); motions.dof], joints, rows, ..Self::default() };
         table.add(motions, rigid, scales, terms, None);
         table
     }
@@ -151,15 +152,15 @@ impl Table {
         Self {
             place: (0..dof).map(place).collect(),
             joints: (0..dof).map(|_| none()).collect(),
-            rows: Vec::new(),
-            identity: Arc::default(),
             terms,
+            ..Self::default()
         }
     }
 
-    /// `terms` for another arm along these motions; those that `self` contains are taken from it.
+    /// `terms` for another arm along these motions; those that `self` contains are taken from it, with their inner products if the same
+    /// rows are fitted.
     pub fn formed_anew(
-        mut self,
+        self,
         motions: &Motions,
         rigid: &[Rigid],
         scales: &Scales,
@@ -167,8 +168,6 @@ impl Table {
         carried: &[(Term, f64)],
         moving: Moving,
     ) -> Self {
-        // The inner products are over other rows, so that they are not needed any more.
-        self.joints.iter_mut().for_each(|joint| joint.stretches = Vec::new());
         let mut table = Self::new(motions, rigid, scales, Vec::new(), carried, moving);
         table.add(motions, rigid, scales, terms, Some(self));
         table
@@ -222,6 +221,11 @@ impl Table {
         &self.identity
     }
 
+    /// The same one as long as the rows are the same, and columns are only added.
+    pub fn origin(&self) -> &Arc<()> {
+        &self.origin
+    }
+
     fn refresh(&mut self) {
         self.identity = Arc::default();
         self.joints.par_iter_mut().for_each(|table| {
@@ -231,31 +235,41 @@ impl Table {
         });
     }
 
-    /// Evaluates more terms; those that `known` contains are taken from it.
-    pub fn add(
-        &mut self,
-        motions: &Motions,
-        rigid: &[Rigid],
-        scales: &Scales,
-        terms: Vec<Term>,
-        mut known: Option<Table>,
-    ) {
-        let copies: Vec<Option<usize>> = terms
-            .iter()
-            .map(|&term| {
-                let known = known.as_ref()?;
-                known.terms.iter().position(|&other| other == term)
-            })
-            .collect();
-        let inertial: Vec<Vec<Vec<Vec<f64>>>> = if terms.iter().any(|term| term.is(&INERTIAL_PARAMETER)) {
+    /// Takes those of the `known` columns that have `copies` among the first terms of this table, which has no columns yet.
+    fn take(&mut self, mut known: Table, copies: &[Option<usize>]) {
+        for (joint, (table, place)) in self.joints.iter_mut().zip(&mut self.place).enumerate() {
+            let old = &mut known.joints[joint];
+            let taken = copies.iter().enumerate();
+            let taken = taken.filter_map(|(term, &copy)| Some((term, known.place[joint][copy?]?)));
+            let (terms, places): (Vec<usize>, Vec<usize>) = taken.unzip();
+            for (stretch, known) in table.stretches.iter_mut().zip(&old.stretches) {
+                stretch.take(known, &places);
+            }
+            table.x = places.iter().map(|&column| std::mem::take(&mut old.x[column])).collect();
+            terms.into_iter().enumerate().for_each(|(column, term)| place[term] = Some(column));
+        }
+    }
+
+    /// Evaluates more terms; those that `known` contains are taken from it, if this table has no columns yet.
+    pub fn add(&mut self, motions: &Motions, rigid: &[Rigid], scales: &Scales, terms: Vec<Term>, known: Option<Table>) {
+        let first = self.terms.len();
+        self.place.iter_mut().for_each(|place| place.resize(first + terms.len(), None));
+        let of = |term: &Term| known.as_ref()?.terms.iter().position(|other| other == term);
+        let copies: Vec<Option<usize>> = terms.iter().map(of).collect();
+        if let Some(known) = known {
+            self.take(known, &copies);
+        }
+        let is_new = |(term, copy): (&Term, &Option<usize>)| term.is(&INERTIAL_PARAMETER) && copy.is_none();
+        let inertial: Vec<Vec<Vec<Vec<f64>>>> = if terms.iter().zip(&copies).any(is_new) {
             let along = motions.chunks.par_iter().zip(rigid);
             along.map(|(chunk, rigid)| rigid.inertial_columns(chunk)).collect()
         } else {
             Vec::new()
         };
-        for (terms, copies) in terms.chunks(BATCH).zip(copies.chunks(BATCH)) {
+        let batches = terms.chunks(BATCH).zip(copies.chunks(BATCH));
+        for (from, (batch, copies)) in (first..).step_by(BATCH).zip(batches) {
             // The motion behind a compliant joint is simulated once for all joints on which it acts.
-            let links: Vec<Vec<LinkSide>> = terms
+            let links: Vec<Vec<LinkSide>> = batch
                 .par_iter()
                 .zip(copies)
                 .map(|(&term, copy)| {
@@ -265,22 +279,30 @@ impl Table {
                 .collect();
             // The column of every term on every joint; `None` if it does not act there.
             let rows = self.len();
+            // That of an inertial parameter, which is evaluated now, or was taken before.
+            let of_link = |joint: usize, link: usize, parameter: usize| -> Vec<f64> {
+                if !inertial.is_empty() {
+                    let k = link * bodies::PER_LINK + parameter;
+                    return inertial.iter().flat_map(|chunk| &chunk[joint][k]).copied().collect();
+                }
+                let known = Term::about(&INERTIAL_PARAMETER, link).of(parameter);
+                let place = terms.iter().position(|&term| term == known);
+                let place = place.and_then(|term| self.place[joint][first + term]);
+                place.map_or_else(|| vec![0.0; rows], |place| self.joints[joint].x[place].clone())
+            };
             let evaluate = |joint: usize, at: usize| -> Option<Vec<f64>> {
-                let (term, links) = (terms[at], &links[at]);
+                let (term, links) = (batch[at], &links[at]);
                 if copies[at].is_some() {
                     return None;
                 }
                 let mut column = Vec::new();
                 if term.is(&INERTIAL_PARAMETER) {
-                    let k = term.of[0] * bodies::PER_LINK + term.of[1];
-                    column = inertial.iter().flat_map(|chunk| &chunk[joint][k]).copied().collect();
+                    column = of_link(joint, term.of[0], term.of[1]);
                 } else if term.is(&OWN_LOAD) {
-                    let k = term.of[0] * bodies::PER_LINK + term.of[1];
-                    for (chunk, inertial) in motions.chunks.iter().zip(&inertial) {
-                        let shares = chunk.shares_before(motions.sources[chunk.recording].own_load_until);
-                        let values = inertial[joint][k].iter().zip(shares);
-                        column.extend(values.map(|(value, share)| share * value));
-                    }
+                    let has = |chunk: &Chunk| chunk.shares_before(motions.sources[chunk.recording].own_load_until);
+                    let shares = motions.chunks.iter().flat_map(has);
+                    let values = of_link(joint, term.of[0], term.of[1]);
+                    column.extend(values.iter().zip(shares).map(|(value, share)| share * value));
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
                         let values = match links.get(c) {
@@ -299,31 +321,15 @@ impl Table {
                 let acts = column.len() == rows && column.iter().any(|&v| v != 0.0);
                 acts.then_some(column)
             };
-            let dof = self.dof();
-            let mut columns: Vec<Option<Vec<f64>>> =
-                (0..dof * terms.len()).into_par_iter().map(|k| evaluate(k / terms.len(), k % terms.len())).collect();
-            if let Some(known) = &mut known {
-                for (joint, columns) in columns.chunks_mut(terms.len()).enumerate() {
-                    for (column, copy) in columns.iter_mut().zip(copies) {
-                        let place = copy.and_then(|copy| known.place[joint][copy]);
-                        if let Some(place) = place {
-                            *column = Some(std::mem::take(&mut known.joints[joint].x[place]));
-                        }
-                    }
+            let (dof, count) = (self.dof(), batch.len());
+            let columns: Vec<Option<Vec<f64>>> =
+                (0..dof * count).into_par_iter().map(|k| evaluate(k / count, k % count)).collect();
+            for (k, column) in columns.into_iter().enumerate() {
+                let table = &mut self.joints[k / count];
+                if let Some(column) = column {
+                    self.place[k / count][from + k % count] = Some(table.x.len());
+                    table.x.push(column);
                 }
-            }
-            let places = self.joints.iter_mut().zip(columns.chunks_mut(terms.len()));
-            let places = places.map(|(table, columns)| {
-                let push = |column: &mut Option<Vec<f64>>| {
-                    column.take().map(|column| {
-                        table.x.push(column);
-                        table.x.len() - 1
-                    })
-                };
-                columns.iter_mut().map(push).collect::<Vec<_>>()
-            });
-            for (place, more) in self.place.iter_mut().zip(places) {
-                place.extend(more);
             }
         }
         self.refresh();

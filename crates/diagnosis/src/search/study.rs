@@ -118,7 +118,7 @@ impl Study {
 
     /// The candidates that `options` allow, with their columns along `data`.
     pub fn new(data: Data, options: &Options) -> Self {
-        Self::with(data, options, None)
+        Self::with(data, options, None, None)
     }
 
     /// This study, in whose background the recordings with another load at the tip have a load of their own. A load that was
@@ -148,12 +148,13 @@ impl Study {
                 data.motions.sources[recording].own_load_until = load.until.unwrap_or(f64::INFINITY);
             }
             let prior = load.prior(&data.fitted);
-            self = Self::with(data, options, Some(prior));
+            self = Self::with(data, options, Some(prior), Some(self.table));
         }
         Self { own_load, ..self }
     }
 
-    fn with(data: Data, options: &Options, own_load: Option<LoadPrior>) -> Self {
+    /// The study with a load that some recordings have of their own; columns that `known` contains are taken from it.
+    fn with(data: Data, options: &Options, own_load: Option<LoadPrior>, known: Option<Table>) -> Self {
         let (stated, thresholds) = (Stated::of(options), options.thresholds.clone());
         let Data { arm, motions, rigid, scales, fitted, .. } = &data;
         let times: Vec<(f64, f64)> = spans(motions)
@@ -231,7 +232,10 @@ impl Study {
         let always = contact_columns(f64::NEG_INFINITY, f64::INFINITY, false);
         let force = [0, 1, 2].map(|k| terms.len() + k);
         terms.extend(always);
-        let table = Table::new(motions, rigid, scales, terms, &[], Moving::Steadily);
+        let table = match known {
+            Some(known) => known.formed_anew(motions, rigid, scales, terms, &[], Moving::Steadily),
+            None => Table::new(motions, rigid, scales, terms, &[], Moving::Steadily),
+        };
         Self {
             table,
             candidates,

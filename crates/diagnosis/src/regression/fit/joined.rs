@@ -27,7 +27,7 @@ impl Products {
         let of = |joint: usize| {
             let grams = [&self.gram[joint], &more.gram[joint]];
             let noise = variance[joint] * more.count[joint];
-            Gram::sum(grams[0].len(), grams.into_iter()).with_noise(noise)
+            Gram::sum(Gram::default(), grams[0].len(), grams.into_iter()).with_noise(noise)
         };
         Self {
             gram: Arc::new((0..self.gram.len()).map(of).collect()),

@@ -1,6 +1,7 @@
 //! Inner products of columns over stretches of rows.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
 use gp::release_vectors;
@@ -48,29 +49,45 @@ impl Stretch {
         stretches
     }
 
+    /// Takes the inner products of the columns at `places` of a stretch of another table with each other, if it has the same rows.
+    pub fn take(&mut self, known: &Self, places: &[usize]) {
+        if self.recording == known.recording && self.runs == known.runs {
+            let row = |k: usize| places[..=k].iter().map(|&place| known.gram.of(places[k], place)).collect();
+            self.gram.rows = (0..places.len()).map(row).collect();
+            self.gram.sums = places.iter().map(|&place| known.gram.sums[place]).collect();
+        }
+    }
+
     /// Inner products of the new ones among the columns `x`, with all columns and with `y`.
     pub fn refresh(&mut self, x: &[Vec<f64>], y: &[f64]) {
         let known = self.gram.len();
         let total = x.len();
+        if self.gram.right.len() == total && total > 0 {
+            return;
+        }
         let pick =
             |signal: &[f64]| -> Vec<f64> { self.runs.iter().flat_map(|run| &signal[run.clone()]).copied().collect() };
         let y = pick(y);
         self.gram.square = y.iter().map(|y| y * y).sum();
-        if known == total {
-            return;
+        // Columns of another table had another y there.
+        for x in &x[self.gram.right.len()..known] {
+            self.gram.right.push(pick(x).iter().zip(&y).map(|(x, y)| x * y).sum());
         }
-        for x in &x[known..] {
-            let x = pick(x);
-            self.gram.right.push(x.iter().zip(&y).map(|(x, y)| x * y).sum());
-            self.gram.sums.push(x.iter().sum());
+        let new: Vec<Vec<f64>> = x[known..].iter().map(|x| pick(x)).collect();
+        for x in &new {
+            let sums = |(right, sum): (f64, f64), (x, y): (&f64, &f64)| (right + x * y, sum + x);
+            let (right, sum) = x.iter().zip(&y).fold((0.0, 0.0), sums);
+            self.gram.right.push(right);
+            self.gram.sums.push(sum);
         }
         // The columns one after the other, for this call only, because they take as much memory as the table.
         let mut packed = Vec::with_capacity(total * y.len());
-        for x in x {
+        for x in &x[..known] {
             for run in &self.runs {
                 packed.extend_from_slice(&x[run.clone()]);
             }
         }
+        new.iter().for_each(|x| packed.extend_from_slice(x));
         let all = MatRef::from_column_major_slice(&packed, y.len(), total);
         for from in (known..total).step_by(TOGETHER) {
             let to = total.min(from + TOGETHER);
@@ -85,7 +102,7 @@ impl Stretch {
             );
             release_vectors();
             for k in from..to {
-                self.gram.rows.push(product.col_as_slice(k - from)[..=k].to_vec());
+                self.gram.rows.push(product.col_as_slice(k - from)[..=k].into());
             }
         }
     }
@@ -94,8 +111,8 @@ impl Stretch {
 /// Inner products of columns with each other and with y.
 #[derive(Clone, Debug, Default)]
 pub struct Gram {
-    /// The lower triangle, row by row.
-    rows: Vec<Vec<f64>>,
+    /// The lower triangle, row by row. Rows never change, so that copies share them.
+    rows: Vec<Arc<[f64]>>,
     /// Inner products with y.
     right: Vec<f64>,
     /// The inner product of y with itself.
@@ -150,27 +167,20 @@ impl Gram {
         self
     }
 
-    /// The sum of several products of the same `columns` columns.
-    pub fn sum<'a>(columns: usize, grams: impl Iterator<Item = &'a Gram>) -> Gram {
-        let mut sum = Gram {
-            rows: (0..columns).map(|k| vec![0.0; k + 1]).collect(),
-            right: vec![0.0; columns],
-            square: 0.0,
-            sums: vec![0.0; columns],
-        };
-        for gram in grams {
-            for (row, more) in sum.rows.iter_mut().zip(&gram.rows) {
-                for (value, more) in row.iter_mut().zip(more) {
-                    *value += more;
-                }
+    /// The sum of several products of the same `columns` columns, the first ones of which may be in `known`: the sum of the same
+    /// products when they had fewer columns.
+    pub fn sum<'a>(known: Gram, columns: usize, grams: impl Iterator<Item = &'a Gram> + Clone) -> Gram {
+        let mut sum = known;
+        for k in sum.len()..columns {
+            let mut row = vec![0.0; k + 1];
+            for gram in grams.clone() {
+                row.iter_mut().zip(gram.rows[k].iter()).for_each(|(value, more)| *value += more);
             }
-            for (values, more) in [(&mut sum.right, &gram.right), (&mut sum.sums, &gram.sums)] {
-                for (value, more) in values.iter_mut().zip(more) {
-                    *value += more;
-                }
-            }
-            sum.square += gram.square;
+            sum.rows.push(row.into());
+            sum.right.push(grams.clone().fold(0.0, |value, gram| value + gram.right[k]));
+            sum.sums.push(grams.clone().fold(0.0, |value, gram| value + gram.sums[k]));
         }
+        sum.square = grams.fold(0.0, |square, gram| square + gram.square);
         sum
     }
 }

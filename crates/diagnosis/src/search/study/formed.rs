@@ -18,8 +18,10 @@ pub struct Formed(Mutex<List>);
 struct List {
     /// The table and the prior that they are of.
     of: Option<[Arc<()>; 2]>,
-    /// Without background.
-    bare: [Option<Products>; 2],
+    /// Without background, each with the origin of the table that it is of, which may have fewer columns than the present one.
+    bare: [Option<(Arc<()>, Products)>; 2],
+    /// Whether they have all columns of the present table.
+    is_whole: [bool; 2],
     /// With the backgrounds that were requested last.
     with_background: Vec<(bool, Strengths, Products)>,
 }
@@ -31,7 +33,7 @@ impl List {
             |[own_table, own_prior]: &[Arc<()>; 2]| [Arc::ptr_eq(own_table, table), Arc::ptr_eq(own_prior, prior)];
         let [same_table, same_prior] = self.of.as_ref().map_or([false; 2], is_same);
         if !same_table {
-            self.bare = [None, None];
+            self.is_whole = [false; 2];
         }
         if !same_table || !same_prior {
             self.with_background.clear();
@@ -80,11 +82,17 @@ impl Study {
 
     fn bare(&self, held_out: bool) -> Products {
         let place = usize::from(held_out);
-        if let Some(products) = self.stored(|list| list.bare[place].clone()) {
-            return products;
-        }
-        let products = self.bare_products(&self.table, held_out);
-        self.stored(|list| list.bare[place] = Some(products.clone()));
+        let known = self.stored(|list| list.bare[place].clone().map(|known| (list.is_whole[place], known)));
+        let is_same = |of: &Arc<()>| Arc::ptr_eq(of, self.table.origin());
+        let products = match known {
+            Some((true, (_, products))) => return products,
+            Some((false, (of, products))) if is_same(&of) => products.with_columns_added(&self.table),
+            _ => self.bare_products(&self.table, held_out),
+        };
+        self.stored(|list| {
+            list.bare[place] = Some((Arc::clone(self.table.origin()), products.clone()));
+            list.is_whole[place] = true;
+        });
         products
     }
 
