@@ -20,6 +20,7 @@ pub mod known;
 pub mod measure;
 pub mod motion;
 pub mod noise;
+mod payload_frame;
 pub mod rigid;
 pub mod signal;
 mod turning_base;

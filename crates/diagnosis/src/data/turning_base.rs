@@ -9,12 +9,17 @@ use crate::data::rigid::{Along, TOGETHER};
 /// The number of axes about which the base could turn.
 const AXES: usize = 2;
 
+/// That of an arm of `dof` joints that is not evaluated.
+pub fn zeros(dof: usize, ticks: usize) -> Base {
+    let zeros = || [vec![0.0; ticks], vec![0.0; ticks]];
+    Base { torque: zeros(), inertia: zeros(), coupling: (0..dof).map(|_| zeros()).collect() }
+}
+
 /// Evaluates `arm` on a base that could turn along `chunk`, with joints that are `offset` (rad or m) beyond their encoders.
 pub fn along(arm: &Arm, offset: &[f64], chunk: &Chunk) -> Base {
     let (n, ticks) = (arm.dof(), chunk.ticks());
     let arm = arm.on_turning_base();
-    let zeros = || [vec![0.0; ticks], vec![0.0; ticks]];
-    let mut base = Base { torque: zeros(), inertia: zeros(), coupling: (0..n).map(|_| zeros()).collect() };
+    let mut base = zeros(n, ticks);
     for from in (0..ticks).step_by(TOGETHER) {
         let span = from..ticks.min(from + TOGETHER);
         let states = Along::new(chunk, offset, span.clone());
