@@ -169,10 +169,9 @@ fn felt(columns: &[Vec<f64>], parameter: usize, column: &[f64]) -> Vec<f64> {
 
 /// The largest magnitude of a column: several maxima side by side, so that none waits for the one before it.
 fn largest(column: &[f64]) -> f64 {
-    const SIDE_BY_SIDE: usize = 16;
     let larger = |largest: f64, torque: f64| if torque.abs() > largest { torque.abs() } else { largest };
-    let mut all = [0.0; SIDE_BY_SIDE];
-    let groups = column.chunks_exact(SIDE_BY_SIDE);
+    let mut all = [0.0; 16];
+    let groups = column.chunks_exact(all.len());
     let rest = groups.remainder().iter().fold(0.0, |most, &torque| larger(most, torque));
     for group in groups {
         for (most, &torque) in all.iter_mut().zip(group) {
