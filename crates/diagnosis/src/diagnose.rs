@@ -65,24 +65,24 @@ fn without_torque_lag(
         let doing = format!("torques without their lag: {}", step.doing);
         progress(Step::new(step.done, &doing));
     };
-    let (mut found, mut of_all, mut of_single) = (None, 0, 0);
+    let (mut found, mut of_all, mut of_single): (Option<TorqueLag>, usize, usize) = (None, 0, 0);
     loop {
         let mut next = lags.clone();
         // First those of single recordings, which a lag of all would share with the others.
         let own = if of_single < MOST_LAGS { own_lags(&look.last, &lags.own) } else { None };
-        let removed = if let Some(own) = own {
+        let (removed, rule, of_these) = if let Some(own) = own {
             of_single += 1;
             let before = |at: usize| lags.own.get(at).copied().unwrap_or(0.0);
             next.own = own.iter().enumerate().map(|(at, more)| before(at) + more).collect();
             let some = inputs.iter().zip(&next.own).filter(|(_, own)| **own != 0.0);
-            some.map(|(input, own)| format!("{}: {:.1} ms", input.name, 1e3 * own)).collect::<Vec<_>>().join(", ")
+            let list: Vec<String> = some.map(|(input, own)| format!("{}: {:.1} ms", input.name, 1e3 * own)).collect();
+            (list.join(", "), "the residuals of single recordings show these lags", found)
         } else if of_all < MOST_LAGS
             && let Some(more) = TorqueLag::of(&look.last)
         {
             of_all += 1;
             next.common += more.seconds;
-            found = Some(more);
-            format!("{:.1} ms", 1e3 * next.common)
+            (format!("{:.1} ms", 1e3 * next.common), "the residuals of all joints show this lag", Some(more))
         } else {
             break;
         };
@@ -92,8 +92,8 @@ fn without_torque_lag(
             break;
         }
         let trace = std::mem::take(&mut look.last.study.trace);
-        look = Look::again(arm, &next_moved, options, (trace, removed), &again)?;
-        (lags, without) = (next, recordings);
+        look = Look::again(arm, &next_moved, options, (trace, removed, rule), &again)?;
+        (lags, without, found) = (next, recordings, of_these);
     }
     let of_all = found.filter(|_| lags.common != 0.0).map(|found| found.remark(lags.common));
     let of_single = remark_on_own(inputs, &own_lags_by_name(inputs, &lags));

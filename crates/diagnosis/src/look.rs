@@ -52,10 +52,10 @@ impl Look {
         arm: &Arm,
         inputs: &[Input<'_>],
         options: &Options,
-        (trace, removed): (Trace, String),
+        (trace, removed, rule): (Trace, String, &'static str),
         progress: &dyn Fn(Step<'_>),
     ) -> Result<Self, DiagnosisError> {
-        trace.step([(Action::Lag, removed, None, "the residuals of all joints show this lag", 0.0)]);
+        trace.step([(Action::Lag, removed, None, rule, 0.0)]);
         Self::within(arm, inputs, options, (None, trace), progress)
     }
 

@@ -20,13 +20,13 @@ pub struct LinkSide {
 }
 
 impl LinkSide {
-    /// The links behind the compliance `at` with a motion δ from `sprung` or `gap`.
+    /// The links behind the compliance `at` with a motion δ from `sprung`, `gap` or `swaying`.
     pub fn new(at: Compliant, ticks: Vec<[f64; 3]>) -> Self {
         Self { at, ticks }
     }
 
     /// The torque that it adds on `joint`: M δ̈ + ∂τ/∂q̇ δ̇ + ∂τ/∂q δ. The rotor is before the compliance and does not move
-    /// with δ. A base turns slowly, so that its velocity adds no torque.
+    /// with δ. The small torque of a base's velocity is left out.
     pub fn torque(&self, joint: usize, rigid: Rigid<'_>) -> Vec<f64> {
         let at = match self.at {
             Compliant::Joint(at) => at,

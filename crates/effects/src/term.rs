@@ -81,6 +81,8 @@ pub struct Law {
     pub cone: Cone,
     /// The link's motion behind a compliant joint, simulated once for all joints.
     pub link_side: Option<fn(&Term, &Signals<'_>) -> LinkSide>,
+    /// Whether this compliance is that of the base, so that its torque depends on the whole arm, and not on that of a joint.
+    pub is_of_base: bool,
     /// Adds what a fit found to the arm about which columns are evaluated.
     pub carry: Option<fn(&Term, f64, &mut Carried)>,
     /// Whether it is computed from the measured torque, which is not known for a planned motion.
@@ -104,6 +106,7 @@ impl Law {
         is_sound: |_| true,
         cone: Cone::No,
         link_side: None,
+        is_of_base: false,
         carry: None,
         is_of_torque: false,
         cuts: false,

@@ -10,7 +10,7 @@ use crate::words::list;
 /// The most recordings whose names a sentence lists.
 const NAMED_RECORDINGS: usize = 4;
 
-/// The names of recordings in a sentence, without the folders that all have.
+/// The names of recordings in a sentence, without the folders that all have: names that differ in their folders keep what differs.
 fn short_names<'a>(names: impl Iterator<Item = &'a String>, recordings: &RecordingNames) -> Vec<String> {
     let mut paths = recordings.train.iter().chain(&recordings.held_out);
     let first = paths.next().map_or("", String::as_str);

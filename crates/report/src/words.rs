@@ -143,7 +143,7 @@ pub fn dependence(dependence: &Dependence) -> String {
         Regressor::OwnPositionTimesSpeed => "the product of the joint's position and velocity".into(),
         Regressor::PositionScale => "the scale of the joint's recorded position".into(),
         Regressor::BaseMotion => "the torque of the arm on its base".into(),
-        Regressor::ToolPosition => "the tool's position".into(),
+        Regressor::ToolPosition => "the arm's posture, as a force on the tool".into(),
         Regressor::ToolVelocity => "the tool's velocity".into(),
         Regressor::OtherJoint => match &dependence.joint {
             Some(name) => format!("the motion of {name}"),
@@ -256,8 +256,8 @@ fn explains(report: &Report) -> String {
     match largest_error(report) {
         None => "explains the recordings".to_owned(),
         Some((joint, error)) if has_other_friction(joint) => format!(
-            "explains the training recordings; with the friction of these, the error on the held-out ones is {} times the torque's \
-             standard deviation ({joint})",
+            "explains the training recordings; with their friction, the error on the held-out ones is {} times the torque's standard \
+             deviation ({joint})",
             numbers::nrmse(error)
         ),
         Some((joint, error)) if error >= NOISY => format!(

@@ -204,9 +204,7 @@ pub fn check(arm: &Arm, regular: &RegularRecording, quality: &Quality) -> Checke
         let moves: Vec<bool> = order.iter().map(|&joint| quality.joints[joint].moves).collect();
         // With positions in degrees or of another joint, the model's torques are meaningless.
         let has = |kinds: &[FindingKind]| quality.findings.iter().any(|finding| kinds.contains(&finding.kind));
-        let other_units =
-            [FindingKind::TimeUnit, FindingKind::ClockRate, FindingKind::Degrees, FindingKind::VelocityUnit];
-        let has_other_units = has(&other_units);
+        let has_other_units = has(&[FindingKind::TimeUnit, FindingKind::Degrees, FindingKind::VelocityUnit]);
         if !has_other_units && in_degrees == 0 && !has_other_time {
             checked.misfits.extend(torques(arm, smooth, &moves));
             checked.has_model_units = true;

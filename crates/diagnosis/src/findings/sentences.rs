@@ -278,7 +278,9 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
             "fix the base to stiff ground and repeat the motions, or measure the motion of the base".to_owned()
         }
         Some(Regressor::PositionScale) => {
-            format!("turn {joint} by an angle that you measure, and compare it with the recorded positions")
+            format!(
+                "move {joint} by an angle or a distance that you measure, and compare it with the recorded positions"
+            )
         }
         Some(Regressor::ToolPosition) => {
             "repeat the motions without hoses, cables, cords and balancers at the tool".to_owned()

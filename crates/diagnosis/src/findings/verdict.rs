@@ -13,8 +13,8 @@ use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplai
 use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, poor, structured, swinging};
 use crate::thresholds::{
-    LEAST_MOTION, LEAST_OF_ARM, LEAST_WITH_COMMON_CAUSE, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED,
-    STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING, WITHOUT_KNOWN,
+    LEAST_MOTION, LEAST_WITH_COMMON_CAUSE, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE,
+    STRUCTURED_IN_TRAINING, WITHOUT_KNOWN,
 };
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
@@ -34,11 +34,12 @@ pub fn unexplained(
         };
         let other = candidate.hypothesis.other;
         let on = Dependence { on, joint: other.map(|other| study.data.arm.joints()[other].name.clone()) };
-        let least = study.thresholds.least_unmodelled_share.max(LEAST_OF_ARM * member.share());
-        let is_large = |&joint: &usize| member.shares[joint] >= least;
+        // A form of a joint is that joint's, also where it acts on others.
+        let is_large =
+            |&joint: &usize| member.is_on(joint) && member.shares[joint] >= study.thresholds.least_unmodelled_share;
         let of_arm = (0..member.shares.len()).filter(|joint| candidate.joint.is_none() && is_large(joint));
         for joint in candidate.joint.into_iter().chain(of_arm) {
-            let share = member.shares[joint];
+            let share = if candidate.joint.is_some() { member.share() } else { member.shares[joint] };
             let entry = by_joint.entry(joint).or_default();
             entry.0 = entry.0.hypot(share);
             if !entry.1.iter().any(|(_, known)| *known == on) {

@@ -142,9 +142,9 @@ impl Products {
         self.background.as_ref().is_some_and(|background| !background.is_lag_alone)
     }
 
-    /// The strength of friction that other recordings than the fitted ones have of their own, in the background.
-    pub fn own_friction(&self) -> f64 {
-        self.background.as_ref().map_or(0.0, |background| background.strengths.friction)
+    /// The strength of friction that other recordings than the fitted ones have of their own on `joint`, in the background.
+    pub fn own_friction(&self, joint: usize) -> f64 {
+        self.background.as_ref().map_or(0.0, |background| background.strengths.between_recordings(joint))
     }
 
     /// Independent pieces of evidence per row of a joint.

@@ -19,7 +19,8 @@ pub struct Strengths {
     pub friction: f64,
     /// The joints and recordings in which friction is much different.
     pub varied: Vec<(usize, usize)>,
-    /// How much the friction of each joint differs between recordings, relative to `friction`.
+    /// How much the friction of each joint differs between recordings, relative to `friction`. It costs no evidence: less of it is a simpler
+    /// background.
     pub between: Vec<f64>,
     /// The constant torques of the joints, relative to their prior.
     pub offset: f64,
@@ -109,8 +110,13 @@ impl Strengths {
     /// The strength of the friction of a joint that a recording has of its own.
     pub fn own_friction(&self, joint: Option<usize>, recording: usize) -> f64 {
         let is_varied = joint.is_some_and(|joint| self.varied.contains(&(joint, recording)));
-        let between = joint.map_or(1.0, |joint| self.between[joint]);
-        if is_varied { self.friction.max(VARIED_FRICTION) } else { between * self.friction }
+        let usual = joint.map_or(self.friction, |joint| self.between_recordings(joint));
+        if is_varied { self.friction.max(VARIED_FRICTION) } else { usual }
+    }
+
+    /// The strength of the friction of a joint that most recordings have of their own.
+    pub fn between_recordings(&self, joint: usize) -> f64 {
+        self.between[joint] * self.friction
     }
 
     /// Whether the centre of mass of some link is a placeholder.

@@ -138,7 +138,7 @@ impl Problem<'_> {
         self.candidates[candidate].hypothesis.name().is_none()
     }
 
-    /// Whether a member of `set` may be removed for its cost. Baseline friction may not be removed beside unmodelled forms.
+    /// Whether a member of `set` may be removed for its cost. Baseline friction may not be removed beside unmodelled forms of its joint.
     fn may_go(&self, set: &[usize], member: usize) -> bool {
         let this = &self.candidates[member];
         !this.hypothesis.spec().is_friction
@@ -150,8 +150,10 @@ impl Problem<'_> {
     /// differ.
     pub fn held_out_rss(&self, held: &Products, candidate: usize, fit: &Fit) -> Vec<f64> {
         let rss = held.rss(self.table, &fit.columns, &fit.coefficients);
-        let scale = FRICTION_PRIOR * self.products.own_friction();
-        if scale == 0.0 || !self.candidates[candidate].hypothesis.spec().is_form_of_friction() {
+        let scale = |joint: usize| FRICTION_PRIOR * self.products.own_friction(joint);
+        if (0..rss.len()).all(|joint| scale(joint) == 0.0)
+            || !self.candidates[candidate].hypothesis.spec().is_form_of_friction()
+        {
             return rss;
         }
         let scales = &self.data.scales;
@@ -162,7 +164,7 @@ impl Problem<'_> {
         let own_friction = |joint: usize| {
             let is_own = |term: &Term| term.is(&OWN_FRICTION) && term.joint == Some(joint);
             self.table.terms.iter().any(is_own).then_some(())?;
-            let level = scale * scales.torque[joint];
+            let level = Some(scale(joint) * scales.torque[joint]).filter(|level| *level > 0.0)?;
             let slope = level / scales.speed[joint].max(1e-300);
             Some([(column(&SIGN, joint)?, level), (column(&VELOCITY, joint)?, slope)])
         };

@@ -65,7 +65,7 @@ impl Constants {
     fn new(study: &Study, selected: &Selection, member: usize, joint: usize) -> Option<Self> {
         let mut recordings = moved(&study.data.motions, &study.data.scales).swap_remove(joint);
         recordings.retain(|&recording| study.table.joints[joint].count[recording] > 0);
-        if recordings.len() < 2 || study.strengths.friction <= 0.0 {
+        if recordings.len() < 2 || study.strengths.between_recordings(joint) <= 0.0 {
             return None;
         }
         let terms = &study.table.terms;

@@ -36,7 +36,7 @@ pub fn held_out_gain(problem: &Problem<'_>, held: Option<&Products>, judged: &Ju
     if candidate.window(table).is_some() {
         return Some(contact_gain(data, table, &without.fit, &candidate.columns));
     }
-    let joint = (0..table.dof()).max_by(|&a, &b| member.shares[a].total_cmp(&member.shares[b]))?;
+    let joint = member.place();
     let held = held?;
     if is_idle(problem, &judged.named, member.candidate) {
         let fit = &judged.named.fit;

@@ -26,15 +26,15 @@ pub fn best_factor(problem: &Problem<'_>, held: &Products, set: &[usize], fit: &
     let rss = |factor: f64| {
         let scaled = fit.columns.iter().zip(&fit.coefficients);
         let scaled = scaled.map(|(column, value)| if friction.contains(column) { factor * value } else { *value });
-        held.rss(problem.table, &fit.columns, &scaled.collect::<Vec<f64>>())[joint].max(0.0)
+        held.rss(problem.table, &fit.columns, &scaled.collect::<Vec<f64>>())[joint]
     };
     let [none, one, two] = [0.0, 1.0, 2.0].map(rss);
     let curvature = 0.5 * (two - 2.0 * one + none);
     if curvature <= 0.0 {
-        return (1.0, one);
+        return (1.0, one.max(0.0));
     }
     let factor = (0.5 * (none - one + curvature) / curvature).max(0.0);
-    (factor, rss(factor))
+    (factor, rss(factor).max(0.0))
 }
 
 /// Whether a factor is that of other friction, and not of friction that is nearly the same or that the fit does not determine.

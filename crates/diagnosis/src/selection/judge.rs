@@ -11,8 +11,8 @@ use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
 use crate::selection::of_noise::may_be_noise;
 use crate::thresholds::{
-    ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING, NEARLY_CONSTANT,
-    OF_BEYOND, WORSE,
+    ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_ARM, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING,
+    NEARLY_CONSTANT, OF_BEYOND, WORSE,
 };
 
 mod held_out;
@@ -37,6 +37,11 @@ impl Member {
     /// The largest of its shares.
     pub fn share(&self) -> f64 {
         self.shares.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Whether it has a notable share on `joint`. One of the whole arm has a torque on every joint.
+    pub fn is_on(&self, joint: usize) -> bool {
+        self.shares[joint] > 0.0 && self.shares[joint] >= LEAST_OF_ARM * self.share()
     }
 
     /// The joint on which its share is largest.
@@ -111,8 +116,8 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
         let mut simple = study.allowed();
         simple.retain(|&c| candidates[c].hypothesis.spec().is_baseline_or_constant && study.always_acts(c));
         let with_all = problem.forward(kept.clone(), &simple);
-        let with_forms: Vec<Option<usize>> =
-            beside(&problem, &with_all, &unmodelled).iter().map(|member| candidates[member.candidate].joint).collect();
+        let forms = beside(&problem, &with_all, &unmodelled);
+        let has_form = |c: usize| candidates[c].joint.is_some_and(|joint| forms.iter().any(|form| form.is_on(joint)));
         let exceeds_the_rest = |c: usize| {
             let Some(joint) = candidates[c].joint else { return false };
             let rest = (with_all.fit.rss[joint].max(0.0) / products.count[joint].max(1.0)).sqrt();
@@ -121,11 +126,7 @@ pub fn judge(study: &Study, products: &Products, held: Option<&Products>, mut se
                     > ABOVE_RESIDUAL * rest / study.data.scales.torque[joint].max(1e-300)
         };
         let mut allowed = simple;
-        allowed.retain(|&c| {
-            candidates[c].hypothesis.spec().is_baseline
-                || !with_forms.contains(&candidates[c].joint)
-                || exceeds_the_rest(c)
-        });
+        allowed.retain(|&c| candidates[c].hypothesis.spec().is_baseline || !has_form(c) || exceeds_the_rest(c));
         let next = problem.forward(kept.clone(), &allowed);
         study.note("replaces unmodelled forms", &kept, &next);
         kept = next;

@@ -143,7 +143,7 @@ fn farthest(study: &Study, judged: &Judged, tried: &[usize]) -> Option<(usize, u
         .map(|(_, joint, scale)| (joint, scale))
 }
 
-/// The deviations of the torque constants from one that the background corrects, by joint; those that `selected` names are not among them.
+/// The deviations from one of the torque constants of the joints that have one; that of a named one is zero here.
 fn deviations(study: &Study, selected: &Selection) -> Vec<f64> {
     let deviation = |joint: usize| Some(selected.fit.coefficient(study.torque_constant(joint)?));
     (0..study.data.motions.dof).filter_map(deviation).collect()

@@ -158,7 +158,7 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
     let is_part = |joint: usize| {
         let fit = errors_with(&study.data, &study.table, &judged.named.fit, joint);
         // Unmodelled forms may represent parts of named effects. Therefore the residual of the named effects alone is compared.
-        let has_forms = judged.unmodelled.iter().any(|member| member.shares[joint] > 0.0);
+        let has_forms = judged.unmodelled.iter().any(|form| form.is_on(joint));
         let residuals = structured(&fit)
             .into_iter()
             .chain(of_change.and(poor(&fit, 1.0)))

@@ -83,7 +83,7 @@ pub const FRICTION_STRENGTHS: [f64; 3] = [0.0, 1.0, 3.0];
 /// torque. Source: simulated arms on which the friction of one joint was 1.5 to 2.6 times as large in one recording, 10 to 19 % of its torque.
 pub const VARIED_FRICTION: f64 = 10.0;
 /// How much the friction of a joint may differ between recordings, relative to the strength of all joints: the choices that are tried, on all
-/// joints at once. The evidence decides. Source: cases of `prove` (seed 28113005) in which the Coulomb friction of a wrist was left to the background,
+/// joints at once; a joint with more than the largest of them has one. The evidence decides. Source: cases of `prove` (seed 28113005) in which the Coulomb friction of a wrist was left to the background,
 /// and the held-out error was 6 to 15 times that of full identification.
 pub const FRICTION_BETWEEN: [&[f64]; 3] = [&[0.0, 0.1, 0.3], &[0.1, 0.3], &[0.0]];
 /// The friction that each recording has of its own, over its prior, below which it may be none at all. Source: as for [`FRICTION_BETWEEN`].

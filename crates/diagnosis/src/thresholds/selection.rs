@@ -166,4 +166,4 @@ pub const BESIDE_FEW_LINKS: f64 = 40.0;
 pub const OTHER_HELD_OUT_FRICTION: f64 = 0.15;
 /// The largest such factor; its inverse is the smallest. Drives that warm up do not change their friction by more. Source: as for
 /// `OF_OTHER_FRICTION`.
-pub const MOST_HELD_OUT_FRICTION: f64 = 3.0;
+pub const MOST_HELD_OUT_FRICTION: f64 = 2.0;

@@ -32,7 +32,11 @@ pub fn own_lags(last: &FinalFit, removed: &[f64]) -> Option<Vec<f64>> {
         // Of two recordings, none is the usual one.
         return None;
     }
-    let usual = median(known);
+    let usual = median(known.clone());
+    let as_usual = known.iter().filter(|&&lag| UNIT_LAG * (lag - usual).abs() < LEAST_OWN_LAG).count();
+    if 2 * as_usual <= known.len() {
+        return None;
+    }
     let own = |(recording, lag): (usize, &Option<Residual>)| {
         let Some(Residual { common, .. }) = lag.as_ref().filter(|lag| lag.is_seen) else { return 0.0 };
         let lag = UNIT_LAG * (common.value - usual);
@@ -64,9 +68,13 @@ impl Lagging {
         let rows: Vec<usize> = self.table.rows[recording].clone().filter(|&row| moving[row]).collect();
         let column = |term: Term| self.table.terms.iter().position(|known| *known == term);
         let late = column(Term::on(&LATE, joint).sized([UNIT_LAG]))?;
-        let friction = [&SIGN, &VELOCITY].into_iter().filter_map(|law| column(Term::on(law, joint)));
-        let columns: Vec<Vec<f64>> =
-            [late].into_iter().chain(friction).map(|column| self.table.torque(joint, &[column], &[1.0])).collect();
+        // Also friction that has no name.
+        let all = &last.study.table;
+        let friction = [&SIGN, &VELOCITY].into_iter().filter_map(|law| {
+            let column = all.terms.iter().position(|known| *known == Term::on(law, joint))?;
+            Some(all.torque(joint, &[column], &[1.0]))
+        });
+        let columns: Vec<Vec<f64>> = [self.table.torque(joint, &[late], &[1.0])].into_iter().chain(friction).collect();
         let residual = self.table.residual(joint, &self.fit.columns, &self.fit.coefficients);
         if rows.len() <= columns.len() {
             return None;

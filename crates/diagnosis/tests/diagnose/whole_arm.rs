@@ -3,7 +3,7 @@
 use crate::support::{
     ELBOW, Injected, Motion, baseline_friction, diagnosed, effects_on, motion, named, sentences, start, trio,
 };
-use arm::{Vector3, Workspace};
+use arm::{Arm, Vector3, Workspace};
 use diagnosis::{Diagnosis, Verdict};
 use effects::Regressor;
 use nalgebra::Matrix6xX;
@@ -106,4 +106,16 @@ fn less_friction_in_the_held_out_recording_is_reported() {
     let different = &diagnosis.report.held_out_friction;
     assert!(different.iter().any(|of| of.joint == "elbow"), "{different:?}");
     assert!(different.iter().all(|of| (of.factor - 0.6).abs() < 0.05 && of.recording == "c"), "{different:?}");
+}
+
+/// An arm of one joint has fewer joints than a base has axes.
+#[test]
+fn an_arm_of_one_joint_is_diagnosed() {
+    const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/>
+<joint name="hinge" type="continuous"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/></joint>
+<link name="rod"><inertial><origin xyz=".4 0 0"/><mass value="3"/><inertia ixx=".02" ixy="0" ixz="0" iyy=".2" iyz="0" izz=".2"/></inertial></link></robot>"#;
+    let arm = Arm::from_urdf_text(PENDULUM, "pendulum.urdf").expect("it is an arm");
+    let injected = |motion: &mut Motion, tau: &mut [f64]| tau[0] += 0.8 * motion.qd[0].signum();
+    let diagnosis = diagnosed(&arm, &arm, &injected, Vec::new());
+    assert_eq!(effects_on(&diagnosis, "hinge"), ["coulomb_friction"], "{:?}", sentences(&diagnosis));
 }

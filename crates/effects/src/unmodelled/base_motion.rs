@@ -20,6 +20,12 @@ pub static BASE_MOTION: Spec = Spec {
         let sways = inertia.iter().all(|inertia| *inertia > 0.0);
         if sways { FREQUENCIES.map(form).to_vec() } else { Vec::new() }
     },
+    // No base yields against the torque; one that hardly sways about an axis has any small coefficient there.
+    is_possible: |fitted| {
+        let values = [fitted.value(0), fitted.value(1)];
+        let [least, most] = [f64::min, f64::max].map(|of| of(values[0], values[1]));
+        least > -LEAST_OF_LARGER * most
+    },
     ..Spec::UNMODELLED
 };
 
@@ -30,6 +36,7 @@ static SWAY: Law = Law {
     column: |term, joint, motion| Some(link_side(term, motion).torque(joint, motion.rigid)),
     needs_model: true,
     link_side: Some(link_side),
+    is_of_base: true,
     ..Law::PLAIN
 };
 
@@ -42,3 +49,5 @@ fn link_side(term: &Term, motion: &Signals<'_>) -> LinkSide {
 const FREQUENCIES: [f64; 4] = [3.0, 6.0, 12.0, 25.0];
 /// The damping ratio of the base.
 const DAMPING_RATIO: f64 = 0.05;
+/// The part of the larger coefficient by which that about the other axis may be negative.
+const LEAST_OF_LARGER: f64 = 0.2;

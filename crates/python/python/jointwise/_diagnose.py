@@ -72,7 +72,7 @@ def diagnose(
     only: Effects to fit in place of a search: `"effect:joint"`, or a file that was written from a diagnosis.
     urdf_friction: Which friction in the URDF is known friction.
     cutoff: Half-power frequency of the low-pass filter (Hz), 0.1 to 1000.
-    torque_lag: The lag of all recorded torques behind the positions, which is removed (s); by default, it is estimated if the joints agree on one, and is otherwise 0.
+    torque_lag: The lag of all recorded torques behind the positions, which is removed (s); by default, it is estimated, in all recordings and in single ones, if the joints agree on it, and is otherwise 0.
     urdf_accuracy: How far the URDF's inertial parameters may be off, as a fraction (0.1: ten per cent).
     torque_accuracy: The relative standard deviation of the torque constants.
     as_read: Diagnoses the recordings as they were read, even if their units, signs, order or zeros seem wrong.

@@ -104,8 +104,8 @@ pub fn of(regular: &RegularRecording, joints: &[JointQuality], swapped: &[(usize
                 joints[*other].joint
             );
             add(FindingKind::VelocitySwapped, Some(joint), text);
-        } else if time_unit.is_none() && clock_rate.is_none() {
-            velocity(joint, &mut add);
+        } else if time_unit.is_none() {
+            velocity(joint, clock_rate.is_some(), &mut add);
         }
         let reach = joint.q_range.0.abs().max(joint.q_range.1.abs());
         let in_degrees = joint.velocity_ratio.is_some_and(|ratio| near(ratio.abs(), 1.0 / DEGREES));
@@ -221,7 +221,8 @@ fn near(value: f64, expected: f64) -> bool {
     (value / expected - 1.0).abs() < 0.04
 }
 
-fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&JointQuality>, String)) {
+/// The findings on a joint's recorded velocity; those on its unit are left out if the clock `is_wrong`.
+fn velocity(joint: &JointQuality, is_wrong: bool, add: &mut impl FnMut(FindingKind, Option<&JointQuality>, String)) {
     let Some(ratio) = joint.velocity_ratio else {
         if let Some(correlation) = joint.velocity_correlation.filter(|correlation| correlation.abs() < 0.6) {
             let text = format!(
@@ -240,7 +241,9 @@ fn velocity(joint: &JointQuality, add: &mut impl FnMut(FindingKind, Option<&Join
     let size = ratio.abs();
     // A filtered velocity is smaller than the slope if the motion is small and fast.
     let clear = joint.velocity_correlation.is_some_and(|correlation| correlation.abs() > 0.98);
-    let guess = if near(size, DEGREES) {
+    let guess = if is_wrong {
+        return;
+    } else if near(size, DEGREES) {
         "it is in deg/s, or the position in rad against it: give qd_unit = \"deg/s\" in a column map"
     } else if near(size, 1.0 / DEGREES) {
         "the position is in degrees: give q_unit = \"deg\" in a column map"

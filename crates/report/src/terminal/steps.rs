@@ -1,6 +1,7 @@
 //! The next steps after a diagnosis, the most important first.
 
-use diagnosis::{Report, Unexplained, Verdict};
+use diagnosis::{Dependence, Report, Unexplained, Verdict};
+use effects::Regressor;
 
 use super::{largest, unexplained};
 use crate::{alternatives, next_words, words};
@@ -56,7 +57,10 @@ fn residuals(report: &Report) -> Vec<String> {
             several => {
                 let joints: Vec<String> = several.iter().map(|open| open.joint.clone()).collect();
                 let on = several[0].depends_on.first();
-                let on = on.filter(|_| several.iter().all(|open| open.depends_on.first() == on));
+                // What has a common experiment for another reason is about each joint alone.
+                let common = [Regressor::BaseMotion, Regressor::Time, Regressor::ToolPosition, Regressor::ToolVelocity];
+                let is_common = |on: &&Dependence| common.contains(&on.on);
+                let on = on.filter(is_common).filter(|_| several.iter().all(|open| open.depends_on.first() == on));
                 let on = on.map_or_else(String::new, |on| format!(" that depend on {}", words::dependence(on)));
                 format!("{}: unexplained residuals{on}", words::list(&joints))
             }

@@ -155,7 +155,7 @@ pub struct DiagnoseArgs {
     #[arg(long, value_name = "HZ", value_parser = parse_frequency, allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
 
-    /// The lag of all recorded torques behind the positions, which is removed (s) [default: estimated if the joints agree on one, otherwise 0]
+    /// The lag of all recorded torques behind the positions, which is removed (s) [default: estimated, in all recordings and in single ones, if the joints agree on it, otherwise 0]
     #[arg(long, value_name = "S", value_parser = parse_lag, allow_negative_numbers = true)]
     pub torque_lag: Option<f64>,
 

@@ -158,7 +158,7 @@ impl Study {
         let (set, terms) = self.forget_trials(kept);
         let columns = set.iter().flat_map(|&c| self.candidates[c].columns.iter());
         let selected: Vec<Term> = columns.map(|&column| terms[column]).collect();
-        let is_near = |term: &Term| self.simulated_along[term.of[0]].is_some();
+        let is_near = |term: &Term| !term.law.is_of_base && self.simulated_along[term.of[0]].is_some();
         let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
         let mut old = std::mem::take(&mut self.table);
         old.retain(|term| !term.is_dynamic() || keeps(term));

@@ -24,6 +24,7 @@ impl Study {
         let before = self.strengths.clone();
         let others: Vec<usize> = selected.set.iter().copied().filter(|&c| !self.is_changed_friction(c)).collect();
         (self.strengths.friction, self.strengths.varied) = (0.0, Vec::new());
+        self.strengths.between.fill(1.0);
         let products = self.training_products();
         let problem = self.problem(&products);
         // More friction acts since the change, and what it was more before acts until then.
