@@ -29,6 +29,7 @@ use crate::report::{
 };
 use crate::search::own_load::OwnLoad;
 use crate::selection::FinalFit;
+use crate::selection::judge::Member;
 use crate::selection::predict::errors;
 use crate::selection::{constant_torques, coupling, torque_constants};
 use crate::thresholds::LEAST_FOR_DYNAMICS;
@@ -76,7 +77,10 @@ impl Conclusion {
         let mut others = std::mem::take(&mut inertials.findings);
         if options.only.is_none() {
             others.splice(0..0, dual_sensor::findings(data, inputs, |joint| last.names(&JOINT_ELASTICITY, joint)));
-            others.extend(transients.contact.clone());
+            // What acts on the whole arm without a name may have been stronger for a while.
+            let is_of_arm = |form: &Member| study.candidates[form.candidate].joint.is_none();
+            let acts_on_arm = judged.unmodelled.iter().any(is_of_arm);
+            others.extend(transients.contact.clone().filter(|_| !acts_on_arm));
         }
         findings.extend(others.into_iter().map(|finding| (finding, None)));
         if options.only.is_some() {

@@ -152,7 +152,7 @@ fn deviations(study: &Study, selected: &Selection) -> Vec<f64> {
 /// Whether `candidate` of `selected` names a torque constant, and those of half of the joints deviate in the same direction, with it and in the
 /// background: masses that are wrong by the inverse factor explain the same, as where one joint's torque is none and the masses follow it.
 pub fn is_one_of_many(study: &Study, selected: &Selection, candidate: usize) -> bool {
-    let Some(named) = names(study, candidate) else { return false };
+    let Some(named) = names(study, candidate).filter(|_| study.strengths.gain > 0.0) else { return false };
     let own = selected.fit.coefficient(study.candidates[candidate].columns[0]);
     let joints = (0..study.data.motions.dof).filter(|&joint| joint == named || study.data.scales.torque[joint] > 0.0);
     is_of_many(own, &deviations(study, selected), joints.count(), MOST_USUAL * study.stated.torque_accuracy())
@@ -166,7 +166,7 @@ fn is_of_many(own: f64, others: &[f64], joints: usize, least: f64) -> bool {
 
 /// Whether most of the torque constants deviate alike in the background, so that the sizes of masses depend on a common factor of all torques.
 pub fn most_are_alike(study: &Study, selected: &Selection) -> bool {
-    are_alike(&deviations(study, selected), MOST_USUAL * study.stated.torque_accuracy())
+    study.strengths.gain > 0.0 && are_alike(&deviations(study, selected), MOST_USUAL * study.stated.torque_accuracy())
 }
 
 /// Whether most of the torque constants deviate by `least` or more in the same direction: a common cause, and not an effect on each.

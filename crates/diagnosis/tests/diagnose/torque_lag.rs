@@ -112,7 +112,7 @@ fn a_lag_of_one_recording_is_removed_from_it_alone() {
     assert!((own["b"] - 0.024).abs() < 0.002, "{own:?}");
     assert_eq!(found.report.torque_lag, None);
     assert!(named(&found).is_empty(), "{:?}", sentences(&found));
-    assert!(found.remarks.iter().any(|remark| remark.contains("b: 24")), "{:?}", found.remarks);
+    assert!(found.remarks.iter().any(|remark| remark.contains("(b: 2")), "{:?}", found.remarks);
     let viscous = found.report.findings.iter().filter(|finding| finding.effect == "viscous_friction");
     let sizes: Vec<f64> = viscous.map(|finding| finding.parameters["coefficient"].value).collect();
     assert!(sizes.len() == 3 && sizes.iter().all(|size| (size - VISCOUS).abs() < 0.05 * VISCOUS), "{sizes:?}");
