@@ -23,6 +23,7 @@ pub mod noise;
 mod payload_frame;
 pub mod rigid;
 pub mod signal;
+mod states;
 mod turning_base;
 pub mod used;
 

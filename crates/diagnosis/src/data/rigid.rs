@@ -8,6 +8,7 @@ use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
 use crate::data::payload_frame::payload_to_link;
+use crate::data::states::{Along, TOGETHER};
 use crate::data::turning_base;
 
 /// What is evaluated along a motion.
@@ -346,28 +347,5 @@ impl Rigid {
             *column = if column.iter().all(|&v| v == 0.0) { vec![0.0; chunk.rows()] } else { chunk.filter(column) };
         }
         signals
-    }
-}
-
-/// The number of ticks that are evaluated together: as many regressors as stay in the processor's caches.
-pub const TOGETHER: usize = 64;
-
-/// The states at some ticks of a chunk, joint after joint.
-pub struct Along {
-    pub q: Vec<f64>,
-    pub qd: Vec<f64>,
-    pub qdd: Vec<f64>,
-}
-
-impl Along {
-    pub fn new(chunk: &Chunk, offset: &[f64], ticks: Range<usize>) -> Self {
-        let all = |signal: &[Vec<f64>]| -> Vec<f64> {
-            signal.iter().flat_map(|joint| &joint[ticks.clone()]).copied().collect()
-        };
-        let mut q = all(&chunk.q);
-        for (q, offset) in q.chunks_exact_mut(ticks.len()).zip(offset) {
-            q.iter_mut().for_each(|q| *q += offset);
-        }
-        Self { q, qd: all(&chunk.qd), qdd: all(&chunk.qdd) }
     }
 }

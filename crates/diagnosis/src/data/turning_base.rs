@@ -4,7 +4,7 @@ use arm::Arm;
 use effects::Base;
 
 use crate::data::motion::Chunk;
-use crate::data::rigid::{Along, TOGETHER};
+use crate::data::states::{Along, TOGETHER};
 
 /// The number of axes about which the base could turn.
 const AXES: usize = 2;

@@ -17,7 +17,7 @@ pub static BASE_MOTION: Spec = Spec {
             };
             Form::of_arm(vec![term(0), term(1)])
         };
-        let sways = inertia.iter().all(|inertia| *inertia > 0.0);
+        let sways = grounds.dof() >= LEAST_JOINTS && inertia.iter().all(|inertia| *inertia > 0.0);
         if sways { FREQUENCIES.map(form).to_vec() } else { Vec::new() }
     },
     // No base yields against the torque; one that hardly sways about an axis has any small coefficient there.
@@ -51,3 +51,6 @@ const FREQUENCIES: [f64; 4] = [3.0, 6.0, 12.0, 25.0];
 const DAMPING_RATIO: f64 = 0.05;
 /// The part of the larger coefficient by which that about the other axis may be negative.
 const LEAST_OF_LARGER: f64 = 0.2;
+/// The least number of joints with which a swaying base is told from wrong masses and drives. Source: a real double pendulum, whose residual
+/// it resembled.
+const LEAST_JOINTS: usize = 3;
