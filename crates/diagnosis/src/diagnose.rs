@@ -11,7 +11,7 @@ use crate::look::Look;
 use crate::next;
 use crate::options::{Options, Step};
 use crate::thresholds::{CUTOFF, MOST_LAGS};
-use crate::torque_lag::{Lags, TorqueLag, WithoutLag, own_lags, remark_on_own};
+use crate::torque_lag::{Lagging, Lags, TorqueLag, WithoutLag, remark_on_own};
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
 ///
@@ -69,7 +69,8 @@ fn without_torque_lag(
     loop {
         let mut next = lags.clone();
         // First those of single recordings, which a lag of all would share with the others.
-        let own = if of_single < MOST_LAGS { own_lags(&look.last, &lags.own) } else { None };
+        let Some(lagging) = Lagging::of(&look.last) else { break };
+        let own = if of_single < MOST_LAGS { lagging.own_lags(&look.last, &lags.own) } else { None };
         let (removed, rule, of_these) = if let Some(own) = own {
             of_single += 1;
             let before = |at: usize| lags.own.get(at).copied().unwrap_or(0.0);
@@ -78,7 +79,7 @@ fn without_torque_lag(
             let list: Vec<String> = some.map(|(input, own)| format!("{}: {:.1} ms", input.name, 1e3 * own)).collect();
             (list.join(", "), "the residuals of single recordings show these lags", found)
         } else if of_all < MOST_LAGS
-            && let Some(more) = TorqueLag::of(&look.last)
+            && let Some(more) = TorqueLag::of(&lagging)
         {
             of_all += 1;
             next.common += more.seconds;

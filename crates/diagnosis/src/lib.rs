@@ -57,4 +57,4 @@ pub use report::*;
 pub use thresholds::{LEAST_ROWS, Thresholds, WORTH_HOLDING};
 pub use torque_lag::WithoutLag;
 pub use trace::{Action, Decision};
-pub use words::list;
+pub use words::{late, list};

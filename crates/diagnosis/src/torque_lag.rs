@@ -23,7 +23,7 @@ use crate::selection::FinalFit;
 use crate::selection::bootstrap::Resampled;
 use crate::thresholds::{LEAST_LAG, LEAST_LAGGING, LEAST_NOTED_LAG, SURE_OF_LAG, TURNS_LATE};
 
-pub use own::{own_lags, remark_on_own};
+pub use own::remark_on_own;
 
 /// A lag that the torques of all joints have in common.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +37,7 @@ pub struct TorqueLag {
 impl TorqueLag {
     /// The lag that the residuals of a fit have in common, if the joints agree on it. Delays that are named on joints may be parts of
     /// it and are left out of the fit.
-    pub fn of(last: &FinalFit) -> Option<Self> {
-        let Lagging { joints, fit: lagging, .. } = Lagging::of(last)?;
+    pub fn of(Lagging { joints, fit: lagging, .. }: &Lagging) -> Option<Self> {
         let count = joints.len();
         // The column is the torque less the earlier torque, which a late torque lacks.
         let lags = -DVector::from_column_slice(&lagging.coefficients[lagging.coefficients.len() - count..]);
@@ -84,7 +83,7 @@ pub fn note_on_short(table: &Table, resampled: &Resampled) -> Option<String> {
 }
 
 /// The fit of a look with a lag of the torque of each joint in addition.
-struct Lagging {
+pub struct Lagging {
     /// The joints.
     joints: Vec<usize>,
     /// The columns: the last ones are [`LATE`] on each of the joints.
@@ -94,7 +93,7 @@ struct Lagging {
 
 impl Lagging {
     /// Delays that are named on joints may be parts of a lag and are left out of the fit. `None` if too few joints move.
-    fn of(last: &FinalFit) -> Option<Self> {
+    pub fn of(last: &FinalFit) -> Option<Self> {
         let (study, Selection { fit, set, .. }) = (&last.study, &last.judged.named);
         let delays = set.iter().map(|&c| &study.candidates[c]);
         let delays: Vec<usize> = delays

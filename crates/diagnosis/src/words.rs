@@ -11,6 +11,11 @@ pub fn list<S: Borrow<str>>(words: &[S]) -> String {
     }
 }
 
+/// A lag of so many seconds in words: "23.4 ms later".
+pub fn late(seconds: f64) -> String {
+    format!("{:.1} ms {}", 1e3 * seconds.abs(), if seconds > 0.0 { "later" } else { "earlier" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::list;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use diagnosis::{Parameter, RecordingNames, Report};
+use diagnosis::{Parameter, RecordingNames, Report, late};
 
 use crate::numbers;
 use crate::words::list;
@@ -85,7 +85,6 @@ pub fn different_load(report: &Report) -> Option<String> {
 
 /// The lags of torques that were removed, as sentences; `None` if there were none.
 pub fn torque_lag(report: &Report) -> Option<String> {
-    let late = |lag: f64| format!("{:.1} ms {}", 1e3 * lag.abs(), if lag > 0.0 { "later" } else { "earlier" });
     let all = report.torque_lag.map(|lag| {
         let late = late(lag);
         format!(

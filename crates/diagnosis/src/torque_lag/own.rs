@@ -13,6 +13,7 @@ use crate::data::input::Input;
 use crate::data::statistics::{mean_square, median};
 use crate::selection::FinalFit;
 use crate::thresholds::{LEAST_LAG_NATS, LEAST_LAGGING, LEAST_MORE_OWN_LAG, LEAST_OWN_LAG, LEAST_WITH_OWN_LAG};
+use crate::words::late;
 
 /// The lag of a recording beyond that of the fit.
 struct Residual {
@@ -21,35 +22,34 @@ struct Residual {
     is_seen: bool,
 }
 
-/// The lags (s) that single recordings have beyond that of most others, in addition to those that were `removed` from them, one per
-/// recording; `None` if no recording has another one.
-pub fn own_lags(last: &FinalFit, removed: &[f64]) -> Option<Vec<f64>> {
-    let lagging = Lagging::of(last)?;
-    let recordings = last.study.data.motions.sources.len();
-    let all: Vec<Option<Residual>> = (0..recordings).map(|recording| lagging.common_in(last, recording)).collect();
-    let known: Vec<f64> = all.iter().flatten().map(|lag| lag.common.value).collect();
-    if known.len() < LEAST_WITH_OWN_LAG {
-        // Of two recordings, none is the usual one.
-        return None;
-    }
-    let usual = median(known.clone());
-    let as_usual = known.iter().filter(|&&lag| UNIT_LAG * (lag - usual).abs() < LEAST_OWN_LAG).count();
-    if 2 * as_usual <= known.len() {
-        return None;
-    }
-    let own = |(recording, lag): (usize, &Option<Residual>)| {
-        let Some(Residual { common, .. }) = lag.as_ref().filter(|lag| lag.is_seen) else { return 0.0 };
-        let lag = UNIT_LAG * (common.value - usual);
-        let has_some = removed.get(recording).is_some_and(|removed| *removed != 0.0);
-        let least = if has_some { LEAST_MORE_OWN_LAG } else { LEAST_OWN_LAG };
-        let nats = 0.5 * ((common.value - usual) / common.deviation).powi(2);
-        if lag.abs() >= least && nats >= LEAST_LAG_NATS { lag } else { 0.0 }
-    };
-    let own: Vec<f64> = all.iter().enumerate().map(own).collect();
-    own.iter().any(|lag| *lag != 0.0).then_some(own)
-}
-
 impl Lagging {
+    /// The lags (s) that single recordings have beyond that of most others, in addition to those that were `removed` from them, one per
+    /// recording; `None` if no recording has another one.
+    pub fn own_lags(&self, last: &FinalFit, removed: &[f64]) -> Option<Vec<f64>> {
+        let recordings = last.study.data.motions.sources.len();
+        let all: Vec<Option<Residual>> = (0..recordings).map(|recording| self.common_in(last, recording)).collect();
+        let known: Vec<f64> = all.iter().flatten().map(|lag| lag.common.value).collect();
+        if known.len() < LEAST_WITH_OWN_LAG {
+            // Of two recordings, none is the usual one.
+            return None;
+        }
+        let usual = median(known.clone());
+        let as_usual = known.iter().filter(|&&lag| UNIT_LAG * (lag - usual).abs() < LEAST_OWN_LAG).count();
+        if 2 * as_usual <= known.len() {
+            return None;
+        }
+        let own = |(recording, lag): (usize, &Option<Residual>)| {
+            let Some(Residual { common, .. }) = lag.as_ref().filter(|lag| lag.is_seen) else { return 0.0 };
+            let lag = UNIT_LAG * (common.value - usual);
+            let has_some = removed.get(recording).is_some_and(|removed| *removed != 0.0);
+            let least = if has_some { LEAST_MORE_OWN_LAG } else { LEAST_OWN_LAG };
+            let nats = 0.5 * ((common.value - usual) / common.deviation).powi(2);
+            if lag.abs() >= least && nats >= LEAST_LAG_NATS { lag } else { 0.0 }
+        };
+        let own: Vec<f64> = all.iter().enumerate().map(own).collect();
+        own.iter().any(|lag| *lag != 0.0).then_some(own)
+    }
+
     /// The lag (in [`UNIT_LAG`]) beyond that of the fit that the residuals of most joints show in a recording, if they agree on one.
     fn common_in(&self, last: &FinalFit, recording: usize) -> Option<Residual> {
         let of = |&joint: &usize| self.of_joint(last, recording, joint);
@@ -95,11 +95,7 @@ impl Lagging {
 /// A note on the lags of single recordings.
 pub fn remark_on_own(inputs: &[Input<'_>], own: &BTreeMap<String, f64>) -> Option<String> {
     let named = inputs.iter().filter_map(|input| Some((input.name, own.get(input.name)?)));
-    let list: Vec<String> = named
-        .map(|(name, lag)| {
-            format!("{name}: {:.1} ms {}", 1e3 * lag.abs(), if *lag > 0.0 { "later" } else { "earlier" })
-        })
-        .collect();
+    let list: Vec<String> = named.map(|(name, lag)| format!("{name}: {}", late(*lag))).collect();
     (!list.is_empty()).then(|| {
         format!(
             "the torques of single recordings were recorded later or earlier than in the others, as on another clock ({}); they are compared \
