@@ -50,7 +50,7 @@ pub use error::ArmError;
 pub use inertia::Inertia;
 pub use inverse_dynamics::{FEATURES, NewtonEulerFeatures};
 pub use joint::{Joint, JointKind, Limits};
-pub use model::{Arm, FixedBody, Frame, STANDARD_GRAVITY};
+pub use model::{Arm, FixedBody, Frame, Placeholder, STANDARD_GRAVITY};
 pub use nalgebra::{DMatrix, Matrix3, Matrix6xX, Vector3};
 pub use pose::Pose;
 pub use regressor::PARAMETERS_PER_LINK;

@@ -220,3 +220,40 @@ fn entities_are_not_expanded() {
     let message = entities("<!ENTITY e9 SYSTEM \"file:///etc/hostname\">");
     assert!(message.contains("e.urdf"), "{message}");
 }
+
+/// Placeholders of 1 kg m² on a link of 0.2 kg are those of a body that is larger than the arm.
+#[test]
+fn moments_of_inertia_larger_than_the_arm_are_doubted() {
+    let urdf = |moment: &str| {
+        let link = |name: &str, moment: &str| {
+            format!(
+                "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='0.2'/><inertia ixx='{moment}' ixy='0' ixz='0' \
+                 iyy='{moment}' iyz='0' izz='{moment}'/></inertial></link>"
+            )
+        };
+        let joint = |name: &str, parent: &str, child: &str| {
+            format!(
+                "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/><origin xyz='0.3 0 0'/>\
+                 <axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='9' velocity='9'/></joint>"
+            )
+        };
+        format!(
+            "<robot name='two'>\n<link name='base'/>\n{}\n{}\n{}\n{}\n</robot>",
+            link("upper", "1e-3"),
+            link("fore", moment),
+            joint("shoulder", "base", "upper"),
+            joint("elbow", "upper", "fore")
+        )
+    };
+    let warnings = |moment: &str| {
+        let arm = Arm::from_urdf_text(&urdf(moment), "two.urdf").expect("it is an arm");
+        arm.warnings().join("; ")
+    };
+    assert_eq!(warnings("1e-3"), "");
+    let doubted = warnings("1");
+    assert!(
+        doubted.contains("link \"fore\" (line 4)") && doubted.contains("2.24 m") && doubted.contains("0.60 m"),
+        "{doubted}"
+    );
+    assert!(!doubted.contains("upper"), "{doubted}");
+}

@@ -145,6 +145,17 @@ pub enum Warning {
         /// The time of the first (s).
         time: f64,
     },
+    /// Positions jump between two rows; the rows before and after are separate runs.
+    Jumps {
+        /// The joint.
+        joint: String,
+        /// The number of jumps.
+        jumps: usize,
+        /// The time of the first (s).
+        time: f64,
+        /// The size of the first (rad or m).
+        size: f64,
+    },
     /// An optional column contains something other than numbers and was omitted.
     ColumnLeftOut {
         /// Its header.
@@ -302,6 +313,13 @@ impl fmt::Display for Warning {
                 "{}{joint}: the encoder wraps at a turn {jumps} {} (first at {time:.3} s); the positions were made continuous",
                 quantity.prefix(),
                 if *jumps == 1 { "time" } else { "times" }
+            ),
+            Self::Jumps { joint, jumps, time, size } => write!(
+                f,
+                "q_{joint} jumps {} between two rows by more than a joint can move (first by {size:.3} rad or m at {time:.3} s); the rows before \
+                 and after are treated as separate runs. If the encoder lost its position, its zero differs between them: diagnose \
+                 one of them only",
+                if *jumps == 1 { "once".to_string() } else { format!("{jumps} times") }
             ),
             Self::NoVelocity => write!(f, "there is no velocity (qd_<joint>); it is differentiated from the position"),
             Self::Jitter { rms, max, time, period } => write!(

@@ -9,6 +9,9 @@ use crate::inertia::Inertia;
 use crate::joint::Joint;
 use crate::model::Arm;
 
+/// The length of an arm, below which its links are not compared with it (m).
+const LEAST_REACH: f64 = 0.05;
+
 impl<'a> Reader<'a> {
     /// Checks that the links form one tree, and returns its root.
     pub(super) fn check_tree(&self) -> Result<&'a str, ArmError> {
@@ -117,8 +120,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses an arm without any inertia, and warns of each moving link without mass where others have some. Forward dynamics needs
-    /// [`Arm::massless_joint`] to be `None`.
+    /// Refuses an arm without any inertia, and warns of each moving link without mass where others have some, and of links that are larger
+    /// than the arm. Forward dynamics needs [`Arm::massless_joint`] to be `None`.
     pub(super) fn check_masses(&self, arm: &mut Arm) -> Result<(), ArmError> {
         if arm.joints.iter().all(|joint| joint.inertia == Inertia::zero()) {
             return Err(self.robot_error(
@@ -127,9 +130,28 @@ impl<'a> Reader<'a> {
             ));
         }
         let massless = arm.joints.iter().filter(|joint| joint.inertia.mass == 0.0);
-        let notes: Vec<String> = massless.map(|joint| self.massless(joint)).collect();
+        let mut notes: Vec<String> = massless.map(|joint| self.massless(joint)).collect();
+        let tool = arm.tool_frame().link_from_frame.translation.norm();
+        let reach = tool + arm.joints.iter().map(|joint| joint.parent_from_joint.translation.norm()).sum::<f64>();
+        notes.extend(arm.joints.iter().filter_map(|joint| self.larger_than_the_arm(joint, reach)));
         arm.warnings.extend(notes);
         Ok(())
+    }
+
+    /// The warning that the moments of inertia of the link of `joint` are those of a body larger than the whole arm of length `reach` (m),
+    /// as a placeholder of 1 kg m² is.
+    fn larger_than_the_arm(&self, joint: &Joint, reach: f64) -> Option<String> {
+        let moment = joint.inertia.tensor.symmetric_eigenvalues().max();
+        let radius = (moment / joint.inertia.mass).sqrt();
+        (joint.inertia.mass > 0.0 && reach > LEAST_REACH && radius > reach).then(|| {
+            let name = &joint.link_name;
+            format!(
+                "link \"{name}\" (line {}) has a moment of inertia of {moment:.3} kg m² and a mass of {:.3} kg, as a body with a radius of \
+                 gyration of {radius:.2} m, and the whole arm is {reach:.2} m long; is it a placeholder? correct its <inertia>",
+                line_of(self.text, "link", name),
+                joint.inertia.mass
+            )
+        })
     }
 
     /// The warning that the link of `joint` has no mass.
