@@ -143,6 +143,7 @@ pub mod unmodelled {
     mod load;
     mod other_position;
     mod other_speed;
+    mod other_torque;
     mod own_position;
     mod periodic;
     mod position_scale;
@@ -156,6 +157,7 @@ pub mod unmodelled {
     pub use load::LOAD;
     pub use other_position::OTHER_POSITION;
     pub use other_speed::OTHER_SPEED;
+    pub use other_torque::OTHER_TORQUE;
     pub use own_position::OWN_POSITION;
     pub use periodic::{PERIODIC, columns as periodic_columns};
     pub use position_scale::POSITION_SCALE;
@@ -203,6 +205,7 @@ pub static UNMODELLED: &[&Spec] = &[
     &unmodelled::OWN_POSITION,
     &unmodelled::OTHER_POSITION,
     &unmodelled::OTHER_SPEED,
+    &unmodelled::OTHER_TORQUE,
     &unmodelled::HISTORY,
     &unmodelled::LOAD,
     &unmodelled::PRODUCT,

@@ -11,6 +11,8 @@ pub enum Regressor {
     Load,
     /// The motion of another joint.
     OtherJoint,
+    /// The torque of another joint.
+    OtherTorque,
     /// The joint's position.
     OwnPosition,
     /// The product of the joint's position and velocity.
@@ -35,6 +37,7 @@ impl Regressor {
             Self::History => "history",
             Self::Load => "load",
             Self::OtherJoint => "other_joint",
+            Self::OtherTorque => "other_torque",
             Self::OwnPosition => "own_position",
             Self::OwnPositionTimesSpeed => "own_position_times_speed",
             Self::OwnSpeed => "own_speed",

@@ -145,11 +145,14 @@ pub fn dependence(dependence: &Dependence) -> String {
         Regressor::BaseMotion => "the torque of the arm on its base".into(),
         Regressor::ToolPosition => "the arm's posture, as a force on the tool".into(),
         Regressor::ToolVelocity => "the tool's velocity".into(),
-        Regressor::OtherJoint => match &dependence.joint {
-            Some(name) => format!("the motion of {name}"),
-            None => "the motion of another joint".into(),
-        },
+        Regressor::OtherJoint => format!("the motion of {}", other(dependence)),
+        Regressor::OtherTorque => format!("the torque of {}, as where channels are not separated", other(dependence)),
     }
+}
+
+/// The other joint that a residual depends on.
+fn other(dependence: &Dependence) -> &str {
+    dependence.joint.as_deref().unwrap_or("another joint")
 }
 
 /// The joint on which a finding is largest: its own, or the one with the largest share.

@@ -8,7 +8,7 @@ use effects::drive::JOINT_ELASTICITY;
 
 use super::found::findings;
 use super::held_out_friction::OtherFriction;
-use super::inertials::{Inertials, inertials, leave_out_single_links};
+use super::inertials::{Inertials, doubt_payload, inertials, leave_out_single_links};
 use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
@@ -109,6 +109,8 @@ impl Conclusion {
         let of_moved = unexplained.iter().filter(|open| moves_in_training(last, open));
         let of_moved: Vec<Unexplained> = of_moved.cloned().collect();
         let links_not_named = leave_out_single_links(&mut findings, &of_moved);
+        let joints: Vec<String> = data.arm.joints().iter().map(|joint| joint.name.clone()).collect();
+        doubt_payload(&mut findings, &joints);
         if !has_findings {
             beyond_limits(&data.arm, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);
@@ -148,7 +150,6 @@ impl Conclusion {
             no_motion,
             links_not_named,
             sentences::not_compared(data),
-            sentences::placeholders(&data.arm, &study.strengths.least),
             at_rest::note(last),
             own_friction::note(last),
             torque_constants::note_on_unnamed(study, &judged.named),
@@ -157,7 +158,8 @@ impl Conclusion {
             torque_lag::note_on_short(table, resampled),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
-        let notes = notes.into_iter().flatten().chain(not_there).collect();
+        let placeholders = sentences::placeholders(&data.arm, &study.strengths.least);
+        let notes = notes.into_iter().flatten().chain(placeholders).chain(not_there).collect();
         Self {
             located,
             constant_torques: constants,

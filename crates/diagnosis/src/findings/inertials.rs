@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 
 use arm::Inertia;
-use effects::Effect;
-use effects::arm::{INERTIAL_PARAMETER, INERTIAL_PARAMETERS, body, link_effect};
+use effects::arm::{INERTIAL_PARAMETER, INERTIAL_PARAMETERS, PAYLOAD, body, link_effect};
+use effects::{Effect, Regressor};
 
-use crate::regression::bodies::{PER_LINK, physical};
-use crate::report::{Confusable, Finding, LinkInertials, Parameter, Unexplained};
+use crate::regression::bodies::{LeastBody, PER_LINK, physical};
+use crate::report::{Confusable, Dependence, Finding, LinkInertials, Parameter, Unexplained};
 use crate::search::candidate::Hypothesis;
 use crate::search::study::About;
 use crate::selection::FinalFit;
@@ -16,7 +16,7 @@ use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
 use crate::selection::special_forms::{in_place_of_link, special_forms};
 use crate::thresholds::{
-    LEAST_BODY_RADIUS, LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, PARTLY, SYSTEMATIC,
+    LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, OF_NEIGHBOUR, PARTLY, SYSTEMATIC, WRIST,
 };
 
 /// The links that differ from the URDF.
@@ -37,7 +37,8 @@ pub fn leave_out_single_links(
     findings: &mut Vec<(Finding, Option<usize>)>,
     unexplained: &[Unexplained],
 ) -> Option<String> {
-    let lasts = |residual: &Unexplained| residual.time.is_empty() || !residual.depends_on.is_empty();
+    let is_time = |on: &Dependence| on.on == Regressor::Time;
+    let lasts = |residual: &Unexplained| residual.time.is_empty() || !residual.depends_on.iter().all(is_time);
     let mut left_out = Vec::new();
     findings.retain(|(finding, _)| {
         let mut residuals = unexplained.iter();
@@ -56,6 +57,30 @@ pub fn leave_out_single_links(
             left_out.join(", and ")
         )
     })
+}
+
+/// Makes a payload beside a wrong link of the wrist (`joints` in order) as likely as that link alone: another error of the link than the prior
+/// expects, such as a mirrored centre of mass, resembles a smaller one and a payload together.
+pub fn doubt_payload(findings: &mut [(Finding, Option<usize>)], joints: &[String]) {
+    let wrist = &joints[joints.len().saturating_sub(WRIST)..];
+    let is_link = |finding: &&Finding| finding.effect == INERTIAL_PARAMETERS.name && finding.change.is_none();
+    let links: Vec<String> = findings
+        .iter()
+        .map(|(finding, _)| finding)
+        .filter(is_link)
+        .filter_map(|finding| finding.joint.clone())
+        .filter(|joint| wrist.contains(joint))
+        .collect();
+    let is_payload = |finding: &Finding| finding.effect == PAYLOAD.name && finding.change.is_none();
+    for (finding, _) in findings.iter_mut().filter(|(finding, _)| !links.is_empty() && is_payload(finding)) {
+        finding.probability = finding.probability.map(|probability| probability.min(0.5));
+        for joint in &links {
+            let rival = Confusable { effect: INERTIAL_PARAMETERS.name, joint: Some(joint.clone()) };
+            if !finding.confusable_with.contains(&rival) {
+                finding.confusable_with.insert(0, rival);
+            }
+        }
+    }
 }
 
 const KEYS: [&str; PER_LINK] = ["mass", "com_x", "com_y", "com_z", "ixx", "ixy", "iyy", "ixz", "iyz", "izz"];
@@ -92,7 +117,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
             std::array::from_fn(|parameter| places[parameter].map_or(0.0, |place| draw[place]))
         };
         let of = &nominal[link * PER_LINK..(link + 1) * PER_LINK];
-        let own = |draw: &[f64]| body(&physical(of, LEAST_BODY_RADIUS, &read(draw)));
+        let own = |draw: &[f64]| body(&physical(of, LeastBody::default(), &read(draw)));
         let estimate = own(&resampled.estimate);
         let name = data.arm.joints()[link].name.clone();
         list.effects.push(link_effect(name.clone(), &estimate));
@@ -171,7 +196,9 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let mut others = study.in_other_links(&judged.named, link);
         others.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
         let forms = in_place_of_link(study, &judged.named, link);
-        let lost = others.iter().map(|(_, lost)| lost[0]);
+        // Two neighbours explain nearly the same. How much less the other one explains depends on the prior, and a URDF whose link was given
+        // in a wrong frame or with a wrong sign is not as the prior expects.
+        let lost = others.iter().map(|(_, lost)| lost[0] - OF_NEIGHBOUR * loss);
         let margin = lost.chain(forms.iter().map(|(beyond, _)| *beyond)).fold(score.min(constants), f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
@@ -272,6 +299,24 @@ mod tests {
         assert_eq!(left(&[residual("c", false)]), (both, false));
         for residual in [residual("c", true), residual("a", false)] {
             assert_eq!(left(&[residual]), (vec![None], true));
+        }
+        // A transient depends on time and does not last; a residual that depends on something else does.
+        let on = |regressor: Regressor| Unexplained { depends_on: vec![regressor.into()], ..residual("c", false) };
+        assert_eq!(left(&[on(Regressor::Time)]), (vec![None, Some("b".to_owned())], false));
+        assert_eq!(left(&[on(Regressor::OwnPosition)]), (vec![None], true));
+    }
+
+    /// A mirrored centre of mass of a wrist's link resembles another body of it and a payload together.
+    #[test]
+    fn a_payload_beside_a_wrong_link_of_the_wrist_is_doubtful() {
+        let joints = ["a", "b", "c", "d"].map(str::to_owned);
+        let payload = Finding { probability: Some(0.98), ..Finding::of(Effect::of(&PAYLOAD)) };
+        for (link, expected) in [("b", 0.5), ("a", 0.98)] {
+            let mut findings = vec![(payload.clone(), None), (self::link(Some(link), &[link]), None)];
+            doubt_payload(&mut findings, &joints);
+            assert_eq!(findings[0].0.probability, Some(expected), "{link}");
+            let rivals = findings[0].0.confusable_with.iter().filter(|rival| rival.joint.as_deref() == Some(link));
+            assert_eq!(rivals.count(), usize::from(link == "b"));
         }
     }
 }

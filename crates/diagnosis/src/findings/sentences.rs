@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use arm::Arm;
+use arm::{Arm, Placeholder};
 use effects::arm::INERTIAL_PARAMETERS;
 use effects::{Effect, Regressor};
 
@@ -10,7 +10,7 @@ use crate::data::Data;
 use crate::report::{Change, Dependence, Finding, JointFit, Parameter};
 use crate::search::study::moved;
 use crate::selection::naming::may_be_nothing;
-use crate::thresholds::{ALIKE_SIZES, LEAST_FOR_DYNAMICS, SURE_CHANGE};
+use crate::thresholds::{ALIKE_SIZES, LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, NEARLY_NO_MASS, SURE_CHANGE};
 use crate::words::list;
 
 /// A number with three significant digits, with an exponent only when it is very small or very large.
@@ -138,17 +138,33 @@ pub fn not_compared(data: &Data) -> Option<String> {
     })
 }
 
-/// A note on the links whose centre of mass is not taken from the URDF, which are those with a `least` deviation; `None` if there are none.
-pub fn placeholders(arm: &Arm, least: &[f64]) -> Option<String> {
-    let links = arm.joints().iter().zip(least).filter(|(_, least)| **least > 0.0);
-    let names: Vec<&str> = links.map(|(joint, _)| joint.link_name.as_str()).collect();
-    (!names.is_empty()).then(|| {
-        format!(
+/// Notes on the links of whose body the URDF has a placeholder, if they have a `least` deviation.
+pub fn placeholders(arm: &Arm, least: &[f64]) -> Vec<String> {
+    let all = arm.placeholders(LEAST_BODY_RADIUS, NEARLY_NO_MASS);
+    let (missing, without_centre): (Vec<Placeholder>, Vec<Placeholder>) = all
+        .into_iter()
+        .filter(|placeholder| least[placeholder.link] > 0.0)
+        .partition(|placeholder| placeholder.mass > arm.joints()[placeholder.link].inertia.mass);
+    let names = |of: &[Placeholder]| {
+        let names: Vec<&str> = of.iter().map(|this| arm.joints()[this.link].link_name.as_str()).collect();
+        list(&names)
+    };
+    let mut notes = Vec::new();
+    if !without_centre.is_empty() {
+        notes.push(format!(
             "the URDF has the centre of mass exactly at the joint on {}, which is a placeholder in most URDFs: it is taken as \
              unknown along the link, so that a payload may be undetermined; correct it; if it is true, write 1e-6 in the place of a 0",
-            list(&names)
-        )
-    })
+            names(&without_centre)
+        ));
+    }
+    if !missing.is_empty() {
+        notes.push(format!(
+            "the URDF gives {} no mass: its body is taken as unknown, so that the bodies of its neighbours and a payload may be undetermined; \
+             correct it; if it has none, --urdf-accuracy 0 takes the URDF's masses as exact",
+            names(&missing)
+        ));
+    }
+    notes
 }
 
 /// The changes since the recordings from before, as noun phrases: the place and the effect. The same change on several joints is one
@@ -256,11 +272,15 @@ pub fn of_another_size(known: &Effect, found: &Finding) -> Option<String> {
 
 /// The experiment that shows which effect causes a residual that depends on `on`.
 pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
-    let is_other = |on: &&Dependence| on.on == Regressor::OtherJoint;
-    if let Some(other) = on.filter(is_other).and_then(|on| on.joint.as_ref()) {
-        return format!("move {joint} alone with {other} at rest, then {other} alone with {joint} at rest");
-    }
+    let other = on.and_then(|on| on.joint.as_deref()).unwrap_or("the other joint");
     match on.map(|on| on.on) {
+        Some(Regressor::OtherJoint) => {
+            format!("move {joint} alone with {other} at rest, then {other} alone with {joint} at rest")
+        }
+        Some(Regressor::OtherTorque) => format!(
+            "load {other} by hand or with a weight while {joint} rests: if the torque of {joint} follows, the channels are not separated or \
+             the drives are coupled"
+        ),
         Some(Regressor::OwnPosition) => format!(
             "sweep {joint} slowly over its whole range in both directions, with all other joints at rest, at two speeds"
         ),
@@ -288,7 +308,7 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
         Some(Regressor::ToolVelocity) => {
             "repeat the motions without hoses and flat parts at the tool, and at half the speed".to_owned()
         }
-        Some(Regressor::OwnSpeed | Regressor::OtherJoint) | None => {
+        Some(Regressor::OwnSpeed) | None => {
             format!("move {joint} alone at three constant speeds, in both directions, twice")
         }
     }

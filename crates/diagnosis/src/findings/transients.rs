@@ -51,6 +51,9 @@ struct Residuals<'a> {
     times: Vec<f64>,
     /// The weights of the joints.
     weights: Vec<f64>,
+    /// Whether each joint moves, and does so throughout the length of the filter before and after the row: `[joint][row]`. When it starts
+    /// or stops, the filter mixes dry friction in motion with that at rest, which holds any torque.
+    settled: Vec<Vec<bool>>,
 }
 
 /// Searches transients in the residuals of the named effects (`[joint][row]`) in the held-out recordings. `force` are the columns of
@@ -78,7 +81,8 @@ pub fn search(
         })
         .collect();
     let windows = scan::contacts(table, &times, residual, &weights, force, &held, SEARCHED_TRANSIENTS);
-    let residuals = Residuals { data, table, force, residual, times, weights };
+    let settled = (0..data.motions.dof).map(|joint| settled(data, table, joint)).collect();
+    let residuals = Residuals { data, table, force, residual, times, weights, settled };
     let mut pushes: Vec<Push> = Vec::new();
     for (from, to) in windows {
         let Some((recording, powers)) = residuals.power((from, to)) else {
@@ -147,6 +151,25 @@ fn usual(data: &Data, table: &Table, joint: usize, residual: &[Vec<f64>]) -> f64
     median(all).max(largest)
 }
 
+/// The rows on which `joint` moves and does not rest within one period of the filter's cut-off before or after.
+fn settled(data: &Data, table: &Table, joint: usize) -> Vec<bool> {
+    let mut settled = table.joints[joint].moving.clone();
+    for (recording, rows) in table.rows.iter().enumerate() {
+        let edge = (1.0 / (data.motions.cutoff * data.seconds[recording])).round() as usize;
+        leave_out_edges(&mut settled[rows.clone()], edge);
+    }
+    settled
+}
+
+/// Clears the rows with at most `edge` rows to one that is not `moving`.
+fn leave_out_edges(moving: &mut [bool], edge: usize) {
+    let resting: Vec<usize> = (0..moving.len()).filter(|&row| !moving[row]).collect();
+    for row in resting {
+        let end = (row + edge + 1).min(moving.len());
+        moving[row.saturating_sub(edge)..end].fill(false);
+    }
+}
+
 impl Residuals<'_> {
     /// The rows of a window, joint by joint, on which the joint moves, each with its recording.
     fn rows(&self, window: (f64, f64)) -> impl Iterator<Item = (usize, usize, usize)> {
@@ -157,7 +180,7 @@ impl Residuals<'_> {
                 .filter(move |&row| self.times[row] >= window.0 && self.times[row] <= window.1)
                 .flat_map(move |row| (0..self.data.motions.dof).map(move |joint| (recording, row, joint)))
         })
-        .filter(|&(_, row, joint)| self.table.joints[joint].moving[row])
+        .filter(|&(_, row, joint)| self.settled[joint][row])
     }
 
     /// The recording of a window, and each joint's mean weighted power there.
@@ -241,5 +264,20 @@ impl Residuals<'_> {
             place: Place { time: same, recording: Some(data.motions.sources[source].name.clone()), state: None },
             ..Finding::of(effect)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_near_a_rest_are_not_settled() {
+        let mut moving = [true, true, true, false, true, true, true, true];
+        leave_out_edges(&mut moving, 2);
+        assert_eq!(moving, [true, false, false, false, false, false, true, true]);
+        let mut always = [true; 4];
+        leave_out_edges(&mut always, 2);
+        assert_eq!(always, [true; 4]);
     }
 }

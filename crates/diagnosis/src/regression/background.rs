@@ -12,7 +12,7 @@ use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, LAG, OFFSET, OWN_FRICTION, OWN_LOAD};
 
-use crate::regression::bodies::{PER_LINK, Quadratic, physical, possible_part, prior_about};
+use crate::regression::bodies::{LeastBody, PER_LINK, Quadratic, physical, possible_part, prior_about};
 use crate::regression::strengths::Strengths;
 use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, LAG_PRIOR, LEAST_LAGGING, NAMELESS_OFFSET};
 
@@ -23,8 +23,8 @@ pub struct Prior {
     terms: Vec<Term>,
     /// The inertial parameters of the URDF's links, ten per link.
     nominal: Vec<f64>,
-    /// The least radius of gyration about which each link may have (m).
-    radii: Vec<f64>,
+    /// The least body about which each link may have.
+    least: Vec<LeastBody>,
     /// The prior of each link's inertial parameters, about the bodies of the last fit.
     links: Vec<Quadratic>,
     /// The standard deviation of each column's coefficient that is not an inertial parameter, at strength one.
@@ -72,19 +72,19 @@ impl Background {
 }
 
 impl Prior {
-    /// The prior for an arm with the inertial `parameters` (ten per link) and the least `radii` of gyration about which they may have. The torques of its joints have the standard
-    /// deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
+    /// The prior for an arm with the inertial `parameters` (ten per link) and the `least` bodies about which the links may have. The
+    /// torques of its joints have the standard deviations `torque` (N m or N), their speeds are up to `speed` (rad/s or m/s); `moved` are the training recordings that
     /// move each joint. `own_load` is what is known of a load that some
     /// recordings have of their own.
     pub fn new(
         parameters: &[f64],
-        radii: &[f64],
+        least: &[LeastBody],
         torque: &[f64],
         speed: &[f64],
         moved: &[Vec<usize>],
         own_load: Option<LoadPrior>,
     ) -> Self {
-        let mut prior = Self { nominal: parameters.to_vec(), radii: radii.to_vec(), ..Self::default() };
+        let mut prior = Self { nominal: parameters.to_vec(), least: least.to_vec(), ..Self::default() };
         prior.set_bodies(&vec![0.0; parameters.len()]);
         for link in 0..prior.links.len() {
             for parameter in 0..PER_LINK {
@@ -125,7 +125,7 @@ impl Prior {
     pub fn set_bodies(&mut self, changes: &[f64]) {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
         self.links =
-            links.zip(&self.radii).map(|((nominal, change), &radius)| prior_about(nominal, radius, change)).collect();
+            links.zip(&self.least).map(|((nominal, change), &least)| prior_about(nominal, least, change)).collect();
         self.identity = Arc::default();
     }
 
@@ -133,11 +133,11 @@ impl Prior {
     /// as changes.
     pub fn possible(&self, changes: &[f64]) -> Vec<f64> {
         let links = self.nominal.chunks_exact(PER_LINK).zip(changes.chunks_exact(PER_LINK));
-        let change = |((nominal, change), &radius): ((&[f64], &[f64]), &f64)| {
-            let body = physical(nominal, radius, change);
+        let change = |((nominal, change), &least): ((&[f64], &[f64]), &LeastBody)| {
+            let body = physical(nominal, least, change);
             (0..PER_LINK).map(|k| body[k] - nominal[k]).collect::<Vec<f64>>()
         };
-        links.zip(&self.radii).flat_map(change).collect()
+        links.zip(&self.least).flat_map(change).collect()
     }
 
     /// The next bodies on the way from the physically possible bodies `from` to those of a fit, `to`, as changes of the URDF's inertial
@@ -148,8 +148,8 @@ impl Prior {
         let links =
             || self.nominal.chunks_exact(PER_LINK).zip(from.chunks_exact(PER_LINK)).zip(step.chunks_exact(PER_LINK));
         let part = links()
-            .zip(&self.radii)
-            .map(|(((nominal, from), step), &radius)| possible_part(nominal, radius, from, step))
+            .zip(&self.least)
+            .map(|(((nominal, from), step), &least)| possible_part(nominal, least, from, step))
             .fold(1.0, f64::min);
         let lengths = self.links.iter().zip(step.chunks_exact(PER_LINK)).map(|(prior, step)| {
             let step = DVector::from_column_slice(step);
@@ -208,7 +208,7 @@ impl Prior {
                 }
             }
             term if term.is(&OWN_FRICTION) => strengths.own_friction(term.joint, term.of[1]),
-            _ => strengths.friction,
+            term => strengths.friction_of(term.joint),
         };
         let columns: Vec<usize> = (0..self.terms.len()).filter(|&column| strength(column) > 0.0).collect();
         if columns.is_empty() {
@@ -256,7 +256,7 @@ mod tests {
         let link = [2.0, 0.0, 0.0, 0.2, 0.1, 0.0, 0.1, 0.0, 0.0, 0.1];
         let speed: Vec<f64> = (0..3).map(|joint| f64::from(u8::from(joint < moving))).collect();
         let moved = [vec![0], vec![0], vec![0]];
-        Prior::new(&link.repeat(3), &[0.05; 3], &[1.0; 3], &speed, &moved, None)
+        Prior::new(&link.repeat(3), &[LeastBody::default(); 3], &[1.0; 3], &speed, &moved, None)
     }
 
     #[test]

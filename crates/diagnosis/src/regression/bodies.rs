@@ -6,12 +6,27 @@ pub use nearest::nearest_tensor;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Matrix4, SymmetricEigen};
 
-use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_OF_STEP};
+use crate::thresholds::{LEAST_BODY_LEFT, LEAST_BODY_MASS, LEAST_BODY_RADIUS, LEAST_OF_STEP};
 
 /// Parameters of a link: m, m c (3), Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the link frame's origin.
 pub const PER_LINK: usize = 10;
 /// The number of them that are not moments of inertia; they come first.
 pub const WITHOUT_MOMENTS: usize = 4;
+
+/// The least body of a link, in the place of what the URDF gives of it.
+#[derive(Clone, Copy, Debug)]
+pub struct LeastBody {
+    /// Its mass (kg).
+    pub mass: f64,
+    /// Its radius of gyration (m).
+    pub radius: f64,
+}
+
+impl Default for LeastBody {
+    fn default() -> Self {
+        Self { mass: LEAST_BODY_MASS, radius: LEAST_BODY_RADIUS }
+    }
+}
 
 /// The pseudo-inertia \[Σ, m c; (m c)ᵀ, m\] of ten inertial parameters, Σ = ½ tr(I) 1 − I.
 pub fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
@@ -50,8 +65,8 @@ fn parameters_of(pseudo: &Matrix4<f64>) -> [f64; PER_LINK] {
 
 /// The physically consistent body nearest to `nominal` + `change` (ten inertial parameters each): relative to the nominal one,
 /// its pseudo-inertia has no eigenvalue below [`LEAST_BODY_LEFT`].
-pub fn physical(nominal: &[f64], radius: f64, change: &[f64]) -> [f64; PER_LINK] {
-    let Some(factor) = Cholesky::new(floored(nominal, radius)) else {
+pub fn physical(nominal: &[f64], least: LeastBody, change: &[f64]) -> [f64; PER_LINK] {
+    let Some(factor) = Cholesky::new(floored(nominal, least)) else {
         return std::array::from_fn(|k| nominal[k] + change[k]);
     };
     let sum: Vec<f64> = nominal.iter().zip(change).map(|(a, b)| a + b).collect();
@@ -81,8 +96,8 @@ pub struct Quadratic {
 }
 
 /// The prior of a link that the URDF gives as `nominal`, about the body `nominal` + `change` (ten inertial parameters each).
-pub fn prior_about(nominal: &[f64], radius: f64, change: &[f64]) -> Quadratic {
-    let floor = floored(nominal, radius);
+pub fn prior_about(nominal: &[f64], least: LeastBody, change: &[f64]) -> Quadratic {
+    let floor = floored(nominal, least);
     let lower = Cholesky::new(floor).map_or_else(Matrix4::identity, |factor| factor.l());
     let inverse = lower.try_inverse().unwrap_or_else(Matrix4::identity);
     let mut eigen = SymmetricEigen::new(inverse * (floor + pseudo_inertia(change)) * inverse.transpose());
@@ -113,8 +128,8 @@ pub fn prior_about(nominal: &[f64], radius: f64, change: &[f64]) -> Quadratic {
 
 /// The part of `step` that may be taken from the body `nominal` + `change` (ten inertial parameters each) so that in no direction less
 /// than [`LEAST_OF_STEP`] of it is left; one if all of it may.
-pub fn possible_part(nominal: &[f64], radius: f64, change: &[f64], step: &[f64]) -> f64 {
-    let body = floored(nominal, radius) + pseudo_inertia(change);
+pub fn possible_part(nominal: &[f64], least: LeastBody, change: &[f64], step: &[f64]) -> f64 {
+    let body = floored(nominal, least) + pseudo_inertia(change);
     let Some(inverse) = Cholesky::new(body).and_then(|factor| factor.l().try_inverse()) else {
         return 1.0;
     };
@@ -123,14 +138,14 @@ pub fn possible_part(nominal: &[f64], radius: f64, change: &[f64], step: &[f64])
     if least < LEAST_OF_STEP - 1.0 { (LEAST_OF_STEP - 1.0) / least } else { 1.0 }
 }
 
-/// The pseudo-inertia of a body, enlarged where its radius of gyration is less than `radius` (m) or its mass is too small.
-fn floored(parameters: &[f64], radius: f64) -> Matrix4<f64> {
+/// The pseudo-inertia of a body, enlarged where its radius of gyration or its mass is less than the `least` one.
+fn floored(parameters: &[f64], least: LeastBody) -> Matrix4<f64> {
     let pseudo = pseudo_inertia(parameters);
-    let mass = pseudo[(3, 3)].max(LEAST_BODY_MASS);
+    let mass = pseudo[(3, 3)].max(least.mass);
     let com = pseudo.fixed_view::<3, 1>(0, 3) / mass;
     let about_com: Matrix3<f64> = pseudo.fixed_view::<3, 3>(0, 0) - mass * com * com.transpose();
     let mut eigen = SymmetricEigen::new(about_com);
-    eigen.eigenvalues.apply(|value| *value = value.max(mass * radius * radius));
+    eigen.eigenvalues.apply(|value| *value = value.max(mass * least.radius.powi(2)));
     let second = eigen.recompose() + mass * com * com.transpose();
     let mut floored = Matrix4::zeros();
     floored.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
@@ -143,7 +158,6 @@ fn floored(parameters: &[f64], radius: f64) -> Matrix4<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::thresholds::LEAST_BODY_RADIUS;
 
     /// The length of δπ = 0.1 π (ten per cent of a body) in the metric is 0.1 √4 in every frame, because tr(1) = 4.
     #[test]
@@ -164,7 +178,7 @@ mod tests {
                 tensor[(1, 2)],
                 tensor[(2, 2)],
             ];
-            let metric = prior_about(&parameters, LEAST_BODY_RADIUS, &[0.0; PER_LINK]).precision;
+            let metric = prior_about(&parameters, LeastBody::default(), &[0.0; PER_LINK]).precision;
             let step = DVector::from_iterator(PER_LINK, parameters.iter().map(|p| 0.1 * p));
             let length = (step.transpose() * &metric * &step)[(0, 0)].sqrt();
             assert!((length - 0.2).abs() < 1e-9, "{length}");
@@ -178,25 +192,27 @@ mod tests {
         let nominal = [2.0, 0.2, 0.0, 0.4, 0.3, 0.01, 0.4, 0.02, 0.0, 0.2];
         let times = |factor: f64| nominal.map(|value| factor * value);
         let none = [0.0; PER_LINK];
-        assert!((possible_part(&nominal, LEAST_BODY_RADIUS, &none, &times(-1.0)) - (1.0 - LEAST_OF_STEP)).abs() < 1e-9);
         assert!(
-            (possible_part(&nominal, LEAST_BODY_RADIUS, &none, &times(-4.0)) - (1.0 - LEAST_OF_STEP) / 4.0).abs()
+            (possible_part(&nominal, LeastBody::default(), &none, &times(-1.0)) - (1.0 - LEAST_OF_STEP)).abs() < 1e-9
+        );
+        assert!(
+            (possible_part(&nominal, LeastBody::default(), &none, &times(-4.0)) - (1.0 - LEAST_OF_STEP) / 4.0).abs()
                 < 1e-9
         );
         // About a body of half its size.
         assert!(
-            (possible_part(&nominal, LEAST_BODY_RADIUS, &times(-0.5), &times(-0.5)) - (1.0 - LEAST_OF_STEP)).abs()
+            (possible_part(&nominal, LeastBody::default(), &times(-0.5), &times(-0.5)) - (1.0 - LEAST_OF_STEP)).abs()
                 < 1e-9
         );
         for factor in [-0.5, 0.0, 3.0] {
-            assert_eq!(possible_part(&nominal, LEAST_BODY_RADIUS, &none, &times(factor)), 1.0, "{factor}");
+            assert_eq!(possible_part(&nominal, LeastBody::default(), &none, &times(factor)), 1.0, "{factor}");
         }
     }
 
     /// ½ tr(S²) of a body, by another formula: the eigenvalues of P₀⁻¹ P are those of exp(S).
     fn half_square(nominal: &[f64], change: &[f64]) -> f64 {
-        let product = floored(nominal, LEAST_BODY_RADIUS).try_inverse().expect("it is positive")
-            * (floored(nominal, LEAST_BODY_RADIUS) + pseudo_inertia(change));
+        let product = floored(nominal, LeastBody::default()).try_inverse().expect("it is positive")
+            * (floored(nominal, LeastBody::default()) + pseudo_inertia(change));
         let logs = product.complex_eigenvalues().map(|value| value.re.ln());
         0.5 * logs.norm_squared()
     }
@@ -206,7 +222,7 @@ mod tests {
     fn the_quadratic_has_the_slope_of_the_prior() {
         let nominal = [2.0, 0.2, 0.0, 0.4, 0.3, 0.01, 0.4, 0.02, 0.0, 0.2];
         for change in [[0.0; PER_LINK], [1.5, -0.1, 0.1, 0.3, 0.2, 0.05, 0.3, -0.04, 0.02, 0.1]] {
-            let Quadratic { precision, centre } = prior_about(&nominal, LEAST_BODY_RADIUS, &change);
+            let Quadratic { precision, centre } = prior_about(&nominal, LeastBody::default(), &change);
             let slope = precision * (DVector::from_column_slice(&change) - centre);
             for k in 0..PER_LINK {
                 let at = |step: f64| {

@@ -22,6 +22,8 @@ pub struct Strengths {
     /// How much the friction of each joint differs between recordings, relative to `friction`. It costs no evidence: less of it is a simpler
     /// background.
     pub between: Vec<f64>,
+    /// The joints whose friction curves are not corrected, because a correction makes their held-out error larger than the nominal model's.
+    pub uncorrected_friction: Vec<usize>,
     /// The constant torques of the joints, relative to their prior.
     pub offset: f64,
     /// The torque constants, relative to their prior.
@@ -73,6 +75,9 @@ impl fmt::Display for Strengths {
             let between: Vec<String> = self.between.iter().map(f64::to_string).collect();
             write!(f, "; friction between recordings × {}", between.join(" "))?;
         }
+        for joint in &self.uncorrected_friction {
+            write!(f, "; friction of joint {joint} not corrected")?;
+        }
         if self.lag { write!(f, "; lag") } else { Ok(()) }
     }
 }
@@ -86,6 +91,7 @@ impl Strengths {
             friction: 0.0,
             varied: Vec::new(),
             between: vec![1.0; links],
+            uncorrected_friction: Vec::new(),
             offset: 0.0,
             gain: 0.0,
             named_offsets: Vec::new(),
@@ -111,12 +117,29 @@ impl Strengths {
     pub fn own_friction(&self, joint: Option<usize>, recording: usize) -> f64 {
         let is_varied = joint.is_some_and(|joint| self.varied.contains(&(joint, recording)));
         let usual = joint.map_or(self.friction, |joint| self.between_recordings(joint));
-        if is_varied { self.friction.max(VARIED_FRICTION) } else { usual }
+        if is_varied { self.friction_of(joint).max(VARIED_FRICTION) } else { usual }
     }
 
     /// The strength of the friction of a joint that most recordings have of their own.
     pub fn between_recordings(&self, joint: usize) -> f64 {
-        self.between[joint] * self.friction
+        self.between[joint] * self.friction_of(Some(joint))
+    }
+
+    /// The strength of the friction curve of a joint.
+    pub fn friction_of(&self, joint: Option<usize>) -> f64 {
+        let is_uncorrected = joint.is_some_and(|joint| self.uncorrected_friction.contains(&joint));
+        if is_uncorrected { 0.0 } else { self.friction }
+    }
+
+    /// These strengths without corrections of the friction curves of `joints`.
+    #[must_use]
+    pub fn without_friction_of(&self, joints: &[usize]) -> Self {
+        let mut next = self.clone();
+        next.varied.retain(|(joint, _)| !joints.contains(joint));
+        next.uncorrected_friction.extend(joints);
+        next.uncorrected_friction.sort_unstable();
+        next.uncorrected_friction.dedup();
+        next
     }
 
     /// Whether the centre of mass of some link is a placeholder.
@@ -303,7 +326,11 @@ impl Strengths {
     pub fn part_that_differs(&self, other: &Self) -> Part {
         if self.links != other.links {
             Part::Links
-        } else if self.friction != other.friction || self.varied != other.varied || self.between != other.between {
+        } else if self.friction != other.friction
+            || self.varied != other.varied
+            || self.between != other.between
+            || self.uncorrected_friction != other.uncorrected_friction
+        {
             Part::Friction
         } else {
             Part::Gain

@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 pub struct Dependence {
     /// The kind of quantity.
     pub on: Regressor,
-    /// The other joint, for [`Regressor::OtherJoint`].
+    /// The other joint, for [`Regressor::OtherJoint`] and [`Regressor::OtherTorque`].
     pub joint: Option<String>,
 }
 

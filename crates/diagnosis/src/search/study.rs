@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use arm::Matrix3;
+use arm::{Matrix3, Placeholder};
 use effects::arm::contact_columns;
 use effects::laws::SIGN;
 use effects::{Acts, Grounds, Term};
@@ -12,6 +12,7 @@ use crate::data::measure::{self, spans};
 use crate::data::statistics::mean;
 use crate::options::Options;
 use crate::regression::background::{Background, LoadPrior, Prior};
+use crate::regression::bodies::LeastBody;
 use crate::regression::fit::Products;
 use crate::regression::stated::Stated;
 use crate::regression::strengths::Strengths;
@@ -20,7 +21,9 @@ use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::own_load::OwnLoad;
 use crate::search::problem::{Problem, Selection};
 use crate::search::scope::Scope;
-use crate::thresholds::{LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, OF_PLACEHOLDERS, Thresholds};
+use crate::thresholds::{
+    LEAST_BODY_MASS, LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, NEARLY_NO_MASS, OF_PLACEHOLDERS, Thresholds,
+};
 use crate::trace::Trace;
 
 mod about;
@@ -165,16 +168,17 @@ impl Study {
             .collect();
         let first = times.first().map_or(0.0, |span| span.0);
         let span = times.last().map_or(1.0, |span| span.1 - first).max(1.0);
-        let placeholders = if stated.links != Some(0.0) { arm.placeholders(LEAST_BODY_RADIUS) } else { Vec::new() };
-        let mut radii = vec![LEAST_BODY_RADIUS; arm.dof()];
+        let all = arm.placeholders(LEAST_BODY_RADIUS, NEARLY_NO_MASS);
+        let placeholders = if stated.links == Some(0.0) { Vec::new() } else { all };
+        let mut bodies = vec![LeastBody::default(); arm.dof()];
         let mut least = vec![0.0; arm.dof()];
-        for (link, length) in placeholders {
-            radii[link] = length;
+        for Placeholder { link, mass, length } in placeholders {
+            bodies[link] = LeastBody { mass: mass.max(LEAST_BODY_MASS), radius: length.max(LEAST_BODY_RADIUS) };
             least[link] = OF_PLACEHOLDERS;
         }
         let prior = Prior::new(
             &arm.inertial_parameters(),
-            &radii,
+            &bodies,
             &scales.torque,
             &scales.speed,
             &moved(motions, scales),

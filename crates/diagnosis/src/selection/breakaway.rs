@@ -35,7 +35,10 @@ pub fn at_reversals(study: &mut Study, judged: &mut Judged) {
         let is_slow = |c: usize| stribeck_velocity(&study.terms(c)).is_some_and(|velocity| velocity >= slowest);
         let is_possible =
             best.set.iter().any(|&c| is_form(&study.candidates[c]) && is_slow(c) && problem.is_possible(c, &best.fit));
-        if is_possible && best.score < judged.named.score - LEAST_AT_REVERSALS {
+        let predicts_more = study
+            .held_products()
+            .is_none_or(|held| held.loss_of(&study.table, &best.fit) < held.loss_of(&study.table, &judged.named.fit));
+        if is_possible && predicts_more && best.score < judged.named.score - LEAST_AT_REVERSALS {
             study.note("the rows near reversals require it", &judged.named, &best);
             judged.members = judge::describe(&problem, &best);
             judged.named = best;

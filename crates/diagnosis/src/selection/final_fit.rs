@@ -236,16 +236,16 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
 fn guard(study: &mut Study, judged: &mut Judged) {
     loop {
         let (moving, resting) = harmed(study, &judged.named);
-        if moving.is_none() && !resting {
+        if moving.is_empty() && resting.is_empty() {
             break;
         }
-        if let Some((strengths, next)) = better_outside(study, &judged.named) {
+        if let Some((strengths, next)) = better_outside(study, &judged.named, &moving, &resting) {
             let before = std::mem::replace(&mut study.strengths, strengths);
             study.preferred.get_or_insert(before);
             study.note_strengths(judge::HARMS, &judged.named, &next);
             judged.named = next;
         } else {
-            let Some(joint) = moving else { break };
+            let Some(&joint) = moving.first() else { break };
             let products = study.training_products();
             let problem = study.problem(&products);
             let acts = |member: &&judge::Member| {
@@ -271,26 +271,33 @@ fn fit_of(study: &Study, selected: &Selection, joint: usize) -> JointFit {
     errors_with(&study.data, &study.table, &selected.fit, joint)
 }
 
-/// The first joint whose held-out error in motion is larger with `selected` than with the nominal model, and whether that at rest
-/// is for any joint.
-fn harmed(study: &Study, selected: &Selection) -> (Option<usize>, bool) {
+/// The joints whose held-out error in motion is larger with `selected` than with the nominal model, and those whose error at rest is.
+fn harmed(study: &Study, selected: &Selection) -> (Vec<usize>, Vec<usize>) {
     let is_worse = |nominal: Option<f64>, augmented: Option<f64>| {
         nominal.zip(augmented).is_some_and(|(nominal, augmented)| judge::harms(nominal, augmented))
     };
-    let (mut moving, mut resting) = (None, false);
+    let (mut moving, mut resting) = (Vec::new(), Vec::new());
     for joint in 0..study.data.motions.dof {
         let fit = fit_of(study, selected, joint);
         if is_worse(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
-            moving = moving.or(Some(joint));
+            moving.push(joint);
         }
-        resting |= is_worse(fit.held_out_nrmse_resting_nominal, fit.held_out_nrmse_resting);
+        if is_worse(fit.held_out_nrmse_resting_nominal, fit.held_out_nrmse_resting) {
+            resting.push(joint);
+        }
     }
     (moving, resting)
 }
 
 /// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
-/// are included, because wrong links that explain the motion of some joints change the weight on joints at rest.
-fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Selection)> {
+/// are included, because wrong links that explain the motion of some joints change the weight on joints at rest. A smaller background
+/// corrects less of one part on all joints, or no friction on the joints that are harmed in motion (`moving`) or at rest (`resting`).
+fn better_outside(
+    study: &Study,
+    selected: &Selection,
+    moving: &[usize],
+    resting: &[usize],
+) -> Option<(Strengths, Selection)> {
     let loss = |selected: &Selection| {
         let of = |joint: usize| {
             let fit = fit_of(study, selected, joint);
@@ -299,7 +306,12 @@ fn better_outside(study: &Study, selected: &Selection) -> Option<(Strengths, Sel
         };
         (0..study.data.motions.dof).filter_map(of).sum::<f64>()
     };
-    let trials = study.stated.weaker(&study.strengths).map(|strengths| {
+    let corrected = |joint: &usize| study.strengths.friction_of(Some(*joint)) > 0.0;
+    let mut harmed: Vec<Vec<usize>> = vec![moving.to_vec(), [moving, resting].concat()];
+    harmed.extend([moving, resting].concat().into_iter().map(|joint| vec![joint]));
+    harmed.retain(|joints| joints.iter().any(corrected));
+    let on_joints = harmed.iter().map(|joints| study.strengths.without_friction_of(joints));
+    let trials = on_joints.chain(study.stated.weaker(&study.strengths)).map(|strengths| {
         let products = study.products_at(&strengths);
         let next = study.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
         (loss(&next), strengths, next)

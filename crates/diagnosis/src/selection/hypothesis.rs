@@ -1,5 +1,6 @@
 //! A hypothesis of the user (`--only`): the requested effects are fitted together, without search and selection.
 
+use effects::arm::INERTIAL_PARAMETERS;
 use effects::drive::FARTHEST_COUPLED;
 use effects::{Acts, CATALOGUE, Scope};
 use recording::nearest;
@@ -34,7 +35,8 @@ struct Place<'a> {
 /// # Errors
 /// [`DiagnosisError::Wanted`], if an effect is given twice, is not in the catalogue, or not possible on such a joint.
 pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
-    let mut waiting = check(study, wanted)?;
+    let is_body = |place: &Place<'_>| place.wanted.effect == INERTIAL_PARAMETERS.name;
+    let (bodies, mut waiting): (Vec<Place<'_>>, Vec<Place<'_>>) = check(study, wanted)?.into_iter().partition(is_body);
     let mut placed: Vec<Place<'_>> = Vec::new();
     let products = study.training_products();
     let mut selected = study.problem(&products).choose(Vec::new(), &products.first_weights());
@@ -64,6 +66,17 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         let place = one.joint.as_deref().unwrap_or("the whole arm");
         let remark = format!("{} on {place}: not testable with these recordings; it is not fitted", one.effect);
         study.data.motions.remarks.push(remark);
+    }
+    // Other bodies of links are a background of the fit, under a prior.
+    let links: Vec<Option<usize>> = bodies.iter().map(|place| place.joint).collect();
+    if !links.is_empty() {
+        if let Some(next) = study.with_requested_bodies(&links, &selected) {
+            selected = next;
+        } else {
+            let remark =
+                "inertial_parameters: the recordings are as likely with the URDF's bodies; they are not fitted";
+            study.data.motions.remarks.push(remark.to_owned());
+        }
     }
     for round in 0..ROUNDS {
         selected = resize(study, selected, round > 0);

@@ -166,9 +166,22 @@ fn is_part_of_the_residual(study: &Study, judged: &Judged, member: &judge::Membe
         factor * residuals.fold(0.0, f64::max) > member.shares[joint]
     };
     match candidate.joint {
-        Some(joint) => is_part(joint),
+        Some(joint) => is_part(joint) || adds_nothing(study, judged, member, joint),
         None => (0..study.data.motions.dof).filter(|&joint| member.shares[joint] > 0.0).all(is_part),
     }
+}
+
+/// Whether the effect explains nothing in addition to the unmodelled forms of one column on `joint`, which are as simple as it is.
+fn adds_nothing(study: &Study, judged: &Judged, member: &judge::Member, joint: usize) -> bool {
+    let is_simple = |form: &&judge::Member| study.candidates[form.candidate].columns.len() == 1 && form.is_on(joint);
+    let forms: Vec<usize> = judged.unmodelled.iter().filter(is_simple).map(|form| form.candidate).collect();
+    if forms.is_empty() {
+        return false;
+    }
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let with = problem.choose([&judged.named.set[..], &forms].concat(), &judged.named.fit.weights);
+    problem.without(&with, member.candidate).score - with.score < study.thresholds.least_evidence
 }
 
 /// Whether an effect that is no change is small beside the training error of each of its joints, and of a kind that then often stands for

@@ -75,6 +75,9 @@ pub const OWN_STRENGTHS: [f64; 3] = [0.1, 0.3, 1.0];
 /// centre of mass then deviates by this part of the link's length. Source: seven pairs of published inertial parameters of the UR3, UR5e,
 /// UR10 and Kinova Gen3; 1.0 gives the same names.
 pub const OF_PLACEHOLDERS: f64 = 0.5;
+/// The mass of a link, over the median link's, below which the URDF has none, so that its body is missing and the median link's mass is the
+/// scale of what it may have. Source: simulated arms of which one link had a mass of 0 or 1e-6 kg.
+pub const NEARLY_NO_MASS: f64 = 1e-3;
 /// The factor between the strengths that are tried in the end.
 pub const FINER_STRENGTH: f64 = 1.4;
 /// The strengths of friction's form that are tried. Source: first background.

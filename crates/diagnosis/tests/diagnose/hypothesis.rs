@@ -101,3 +101,17 @@ fn unknown_effects_and_joints_are_refused() {
         assert!(error.contains(part), "{error}");
     }
 }
+
+/// Another body of one link can be requested; where the URDF's is right, nothing is fitted, and a note says so.
+#[test]
+fn another_body_of_a_link_can_be_requested() {
+    let options = Options { only: Some(wanted(&[("inertial_parameters", Some("elbow"))])), ..Options::default() };
+    for (factor, is_found) in [(1.5, true), (1.0, false)] {
+        let heavier = trio().with_scaled_link(ELBOW, factor);
+        let diagnosis = diagnosed_with(&trio(), &heavier, &|_, _| {}, &options).expect("it can be requested");
+        let found: Vec<_> = diagnosis.report.findings.iter().map(|finding| finding.joint.as_deref()).collect();
+        assert_eq!(found, if is_found { vec![Some("elbow")] } else { vec![] }, "{factor}");
+        let notes = diagnosis.remarks.join("; ");
+        assert_eq!(notes.contains("as likely with the URDF's bodies"), !is_found, "{factor}: {notes}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Wrong masses, also beside a drive that hides them.
 
 use crate::support::{
-    Injected, Motion, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
+    Injected, Motion, TRIO, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
 };
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options};
@@ -323,4 +323,21 @@ fn a_placeholder_is_not_believed() {
 
     let exact = diagnosed(&robot, &robot, &friction, Vec::new());
     assert!(!exact.remarks.join("; ").contains("exactly at the joint"));
+}
+
+/// The URDF has no mass for the shoulder's link. Its neighbours and the drives have their names only for what they are.
+#[test]
+fn a_link_without_mass_is_named_and_its_neighbours_are_not() {
+    let mass = r#"<mass value="5"/>"#;
+    assert_eq!(TRIO.matches(mass).count(), 1, "the shoulder's link has this mass");
+    for missing in ["0", "1e-6"] {
+        let believed = TRIO.replace(mass, &mass.replace('5', missing));
+        let believed = Arm::from_urdf_text(&believed, "massless.urdf").expect("it is an arm");
+        let diagnosis = diagnosed(&believed, &trio(), &|motion, tau| baseline_friction(motion, tau), Vec::new());
+        assert_eq!(crate::support::named(&diagnosis), [("inertial_parameters", Some("shoulder"))], "{missing}");
+        let found = &diagnosis.report.inertials["shoulder"].parameters["mass"];
+        assert!(found.ci95[0] <= 5.0 && found.ci95[1] >= 5.0, "{found:?}");
+        let notes = diagnosis.remarks.join("; ");
+        assert!(notes.contains("no mass") && notes.contains("--urdf-accuracy 0"), "{notes}");
+    }
 }

@@ -59,6 +59,7 @@ impl Against {
             }
             Regressor::BaseMotion
             | Regressor::History
+            | Regressor::OtherTorque
             | Regressor::OwnPositionTimesSpeed
             | Regressor::PositionScale
             | Regressor::ToolPosition

@@ -10,7 +10,6 @@ use crate::data::rigid::Rigid;
 use crate::regression::bodies::{self, WITHOUT_MOMENTS};
 use crate::regression::fit::Fit;
 use crate::regression::table::Table;
-use crate::thresholds::LEAST_BODY_RADIUS;
 
 /// An arm with the effects of a fit.
 pub struct About {
@@ -123,7 +122,7 @@ impl About {
             let links = nominal.chunks_exact(bodies::PER_LINK);
             let bodies: Vec<Inertia> = links
                 .zip(inertial.chunks_exact(bodies::PER_LINK))
-                .map(|(nominal, change)| body(&bodies::physical(nominal, LEAST_BODY_RADIUS, change)))
+                .map(|(nominal, change)| body(&bodies::physical(nominal, bodies::LeastBody::default(), change)))
                 .collect();
             arm = arm.with_inertias(&bodies);
         }

@@ -81,6 +81,7 @@ impl Study {
             strengths.friction == self.strengths.friction
                 && strengths.varied == self.strengths.varied
                 && strengths.between == self.strengths.between
+                && strengths.uncorrected_friction == self.strengths.uncorrected_friction
                 && strengths.offset == self.strengths.offset
                 && strengths.gain == self.strengths.gain
                 && pairs.clone().all(|(new, old)| new >= old)
@@ -97,6 +98,22 @@ impl Study {
                 (link, self.problem(&products).choose(set.to_vec(), &near.fit.weights))
             })
             .collect()
+    }
+
+    /// `selected` beside other bodies of the requested links (of all links, if one of them is `None`), with the strength that the evidence
+    /// prefers, which becomes that of the study; `None` if it prefers the URDF's bodies.
+    pub fn with_requested_bodies(&mut self, links: &[Option<usize>], selected: &Selection) -> Option<Selection> {
+        let of_all = links.contains(&None);
+        let strengths: &[f64] = if of_all { &LINK_STRENGTHS } else { &OWN_STRENGTHS };
+        let trial = |&rho: &f64| {
+            let is_wanted = |link: usize| of_all || links.contains(&Some(link));
+            let links = self.strengths.links.iter().enumerate();
+            let links = links.map(|(link, &own)| if is_wanted(link) { own.max(rho) } else { own });
+            Strengths { links: links.collect(), ..self.strengths.clone() }
+        };
+        let (strengths, next) = self.strengthened(selected, strengths.iter().map(trial).collect())?;
+        self.strengths = strengths;
+        Some(next)
     }
 
     /// The strongest background in which all links differ from the URDF and which is nearly as likely as that of `selected` by its score,
