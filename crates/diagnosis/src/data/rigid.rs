@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use arm::{Arm, PARAMETERS_PER_LINK, Workspace};
+use arm::{Arm, Inertia, PARAMETERS_PER_LINK, Workspace};
 use effects::{Base, Scales, Signals};
 use nalgebra::{Matrix6xX, Vector3};
 
@@ -314,6 +314,16 @@ impl Rigid {
                 add(&mut self.payload[joint][parameter][span.clone()], joint, n - 1, &parameters);
             }
         }
+    }
+
+    /// Whether the torques per unit of the links' inertial parameters are those of `other` along the same chunk: their arms differ in
+    /// nothing but their links' bodies.
+    pub fn has_regressor_of(&self, other: &Self) -> bool {
+        let apart = |(_, arm, offset): &(usize, Arm, Vec<f64>)| {
+            (arm.clone().with_inertias(&vec![Inertia::zero(); arm.dof()]), offset.clone())
+        };
+        let mut arms = self.arms.iter().chain(&other.arms).map(apart);
+        arms.next().is_some_and(|first| arms.all(|arm| arm == first))
     }
 
     /// The torque on each joint per unit of each inertial parameter of each link, on the rows of `chunk`:

@@ -1,6 +1,8 @@
 //! The study evaluated again: about the arm of a fit, for the final fit, or for another search.
 
 use effects::Term;
+use effects::arm::INERTIAL_PARAMETER;
+use effects::background::OWN_LOAD;
 use effects::laws::RIGID;
 use rayon::prelude::*;
 
@@ -150,6 +152,7 @@ impl Study {
         let rigid: Vec<Rigid> =
             self.data.motions.chunks.par_iter().map(|chunk| About::along(&stages, &nominal, chunk)).collect();
         let before = self.with_rest_of(fit, rigid);
+        let same_regressor = self.data.rigid.iter().zip(&before).all(|(now, before)| now.has_regressor_of(before));
         for joint in 0..self.data.motions.dof {
             let before = || before.iter().map(|rigid| rigid.tau[joint].clone()).collect();
             let along = self.simulated_along[joint].take().unwrap_or_else(before);
@@ -160,8 +163,9 @@ impl Study {
         let selected: Vec<Term> = columns.map(|&column| terms[column]).collect();
         let is_near = |term: &Term| !term.law.is_of_base && self.simulated_along[term.of[0]].is_some();
         let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
+        let is_of_links = |term: &Term| term.is(&INERTIAL_PARAMETER) || term.is(&OWN_LOAD);
         let mut old = std::mem::take(&mut self.table);
-        old.retain(|term| !term.is_dynamic() || keeps(term));
+        old.retain(|term| !term.is_dynamic() || keeps(term) || same_regressor && is_of_links(term));
         self.table =
             old.formed_anew(&self.data.motions, &self.data.rigid, &self.data.scales, terms, &last.carried, self.moving);
         Some(set)
