@@ -252,7 +252,7 @@ fn moments_of_inertia_larger_than_the_arm_are_doubted() {
     assert_eq!(warnings("1e-3"), "");
     let doubted = warnings("1");
     assert!(
-        doubted.contains("link \"fore\" (line 4)") && doubted.contains("2.24 m") && doubted.contains("0.60 m"),
+        doubted.contains("link \"fore\" (line 4)") && doubted.contains("2.24 m") && doubted.contains("0.80 m"),
         "{doubted}"
     );
     assert!(!doubted.contains("upper"), "{doubted}");

@@ -3,7 +3,7 @@
 use crate::header::Plan;
 use crate::origin::Origin;
 use crate::place::Place;
-use crate::{PartialSignal, Quantity, Recording, Signal, Warning, jumps, wraps};
+use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
 
 /// The state of a channel while it is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +107,6 @@ impl Gathered<'_> {
             origin: Some(origin),
         };
         wraps::unwrap(&mut recording);
-        jumps::divide(&mut recording);
         recording
     }
 

@@ -1,4 +1,5 @@
-//! Positions that jump between two rows by more than an arm can move: an encoder that loses its position, or runs that were appended.
+//! Positions that jump between two rows by more than an arm can move: an encoder that loses its position, frozen data, or runs that were
+//! appended.
 
 use crate::{Recording, Warning};
 
@@ -12,28 +13,29 @@ const TIMES_OTHERS: f64 = 10.0;
 const OF_MOTION: f64 = 0.995;
 /// The largest ratio of the steps before and after a jump to the jump.
 const NEIGHBOUR: f64 = 0.25;
+/// The largest number of jumps of a joint in a recording.
+const MOST: usize = 20;
 /// Rows that are more periods apart are not compared.
 const GAP: f64 = 3.0;
 
-/// Begins a new run in `recording` where the position of a joint jumps, and adds a warning, so that no filter mixes the positions before
-/// and after.
-pub fn divide(recording: &mut Recording) {
-    let mut rows: Vec<usize> = Vec::new();
-    for (joint, q) in recording.q.iter().enumerate() {
-        let jumps = jumps(&recording.time, q, &recording.breaks);
-        if let Some(&first) = jumps.first() {
-            recording.warnings.push(Warning::Jumps {
-                joint: recording.joints[joint].clone(),
-                jumps: jumps.len(),
-                time: recording.time[first],
-                size: q[first] - q[first - 1],
-            });
-            rows.extend(jumps);
-        }
-    }
-    recording.breaks.extend(rows);
-    recording.breaks.sort_unstable();
-    recording.breaks.dedup();
+/// The rows at which a run of `recording` begins: those of the recording, and those before which the position of a joint jumps, so that no
+/// filter mixes the positions before and after. Adds one warning if there are jumps.
+pub fn breaks(recording: &Recording, warnings: &mut Vec<Warning>) -> Vec<usize> {
+    let of_joint = |q: &Vec<f64>| jumps(&recording.time, q, &recording.breaks);
+    let by_joint: Vec<Vec<usize>> = recording.q.iter().map(of_joint).collect();
+    let mut rows = by_joint.concat();
+    rows.sort_unstable();
+    rows.dedup();
+    let Some(&first) = rows.first() else { return recording.breaks.clone() };
+    let jumps = rows.len();
+    let jumping = (0..by_joint.len()).filter(|&joint| by_joint[joint].contains(&first));
+    let step = |joint: usize| recording.q[joint][first] - recording.q[joint][first - 1];
+    let largest = jumping.max_by(|&a, &b| step(a).abs().total_cmp(&step(b).abs())).unwrap_or_default();
+    let (joint, time) = (recording.joints[largest].clone(), recording.time[first]);
+    warnings.push(Warning::Jumps { joint, jumps, time, size: step(largest) });
+    rows.extend(&recording.breaks);
+    rows.sort_unstable();
+    rows
 }
 
 /// The rows before which `q` (rad or m) jumps, where no run begins.
@@ -45,7 +47,11 @@ fn jumps(time: &[f64], q: &[f64], breaks: &[usize]) -> Vec<usize> {
     let middle = periods.len() / 2;
     let period = *periods.select_nth_unstable_by(middle, f64::total_cmp).1;
     let step = |row: usize| q[row] - q[row - 1];
-    let mut sizes: Vec<f64> = (1..q.len()).map(|row| step(row).abs()).collect();
+    // A joint may rest most of the time.
+    let mut sizes: Vec<f64> = (1..q.len()).map(|row| step(row).abs()).filter(|&step| step > 0.0).collect();
+    if sizes.len() < 2 {
+        return Vec::new();
+    }
     let most = ((sizes.len() as f64 * OF_MOTION) as usize).min(sizes.len() - 2);
     let motion = *sizes.select_nth_unstable_by(most, f64::total_cmp).1;
     let least = LEAST.max(TIMES_OTHERS * motion).max(LARGEST_ACCELERATION * period * period);
@@ -57,7 +63,9 @@ fn jumps(time: &[f64], q: &[f64], breaks: &[usize]) -> Vec<usize> {
             && (row - 1..=row + 1).all(follows)
             && step(row - 1).abs().max(step(row + 1).abs()) <= NEIGHBOUR * jump
     };
-    (2..q.len() - 1).filter(is_jump).collect()
+    let jumps: Vec<usize> = (2..q.len() - 1).filter(is_jump).collect();
+    // More of them are a property of the signal, as of positions that are seldom refreshed.
+    if jumps.len() > MOST { Vec::new() } else { jumps }
 }
 
 #[cfg(test)]

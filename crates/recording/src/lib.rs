@@ -106,7 +106,7 @@ pub struct Recording {
     pub temperature: PartialSignal,
     /// Other columns, by their header.
     pub others: Vec<(String, Vec<f64>)>,
-    /// The samples at which a further run begins, if a file contains several, or a position jumps.
+    /// The samples at which a further run begins, if a file contains several.
     pub breaks: Vec<usize>,
     /// What was corrected or omitted while reading.
     pub warnings: Vec<Warning>,

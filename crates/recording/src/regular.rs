@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::clock::{self, Clock};
 use crate::held::without_held;
 use crate::interpolate::between;
-use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning, spikes};
+use crate::{PartialSignal, Quantity, Recording, RecordingError, Signal, Warning, jumps, spikes};
 
 /// The largest number of consecutive missing ticks that are interpolated; a longer gap divides the recording.
 const FILLED: i64 = 5;
@@ -143,14 +143,15 @@ impl Recording {
             let (before, after) = (self.time[row - 1], self.time[row]);
             return Err(RecordingError::Time { row, before, after });
         }
-        let clock = clock::find(&self.time, &self.breaks);
+        let mut warnings = Vec::new();
+        let breaks = jumps::breaks(self, &mut warnings);
+        let clock = clock::find(&self.time, &breaks);
         if clock.period < SHORTEST_PERIOD {
             let period = clock.period;
             return Err(RecordingError::Period { period });
         }
-        let mut warnings = Vec::new();
         let clock = self.unless_sampled_at_stamps(clock, &mut warnings);
-        let stretches = self.stretches(&clock, &mut warnings);
+        let stretches = self.stretches(&clock, &breaks, &mut warnings);
         let mut segments = Vec::new();
         let mut ticks = 0;
         for stretch in &stretches {
@@ -209,7 +210,7 @@ impl Recording {
     }
 
     /// The rows between long gaps.
-    fn stretches(&self, clock: &Clock, warnings: &mut Vec<Warning>) -> Vec<Stretch> {
+    fn stretches(&self, clock: &Clock, breaks: &[usize], warnings: &mut Vec<Warning>) -> Vec<Stretch> {
         let mut stretches: Vec<Stretch> = Vec::new();
         for piece in &clock.pieces {
             let mut begun = piece.rows.start;
@@ -229,7 +230,7 @@ impl Recording {
                     (places.collect(), origin)
                 };
                 // A restart of the clock was reported while reading, and between windows nothing is missing.
-                if begun > 0 && !self.breaks.contains(&begun) && self.left_out == 0.0 {
+                if begun > 0 && !breaks.contains(&begun) && self.left_out == 0.0 {
                     warnings.push(Warning::Gap {
                         from: self.time[begun - 1],
                         to: self.time[begun],

@@ -93,3 +93,16 @@ fn rows_of_one_tick_have_no_clock() {
     assert!(!regular.has_clock);
     assert!(regular.q[0].iter().all(|q| q.abs() < 2.0), "{:?}", regular.q[0]);
 }
+
+#[test]
+fn a_position_that_jumps_begins_another_run() {
+    let at: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.004).collect();
+    let mut recording = sample(at.clone(), &at);
+    recording.q[0][500..].iter_mut().for_each(|q| *q += 0.3);
+    let (regular, warnings) = recording.regular().expect("it has a clock");
+    let ticks: Vec<_> = regular.segments.iter().map(|segment| segment.ticks.clone()).collect();
+    assert_eq!(ticks, [0..500, 500..1000]);
+    assert!((regular.segments[1].start - 2.0).abs() < 1e-6);
+    let texts: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(texts.len() == 1 && texts[0].contains("q_a") && texts[0].contains("2.000 s"), "{texts:?}");
+}

@@ -147,13 +147,13 @@ pub enum Warning {
     },
     /// Positions jump between two rows; the rows before and after are separate runs.
     Jumps {
-        /// The joint.
+        /// The joint of the largest one in the first row with a jump.
         joint: String,
-        /// The number of jumps.
+        /// The number of rows with a jump.
         jumps: usize,
-        /// The time of the first (s).
+        /// The time of the first row (s).
         time: f64,
-        /// The size of the first (rad or m).
+        /// The size of its largest jump (rad or m).
         size: f64,
     },
     /// An optional column contains something other than numbers and was omitted.
@@ -316,9 +316,9 @@ impl fmt::Display for Warning {
             ),
             Self::Jumps { joint, jumps, time, size } => write!(
                 f,
-                "q_{joint} jumps {} between two rows by more than a joint can move (first by {size:.3} rad or m at {time:.3} s); the rows before \
-                 and after are treated as separate runs. If the encoder lost its position, its zero differs between them: diagnose \
-                 one of them only",
+                "positions jump {} between two rows by more than a joint can move (first q_{joint}, by {size:.3} rad or m at {time:.3} s); the \
+                 rows before and after are treated as separate runs. If the encoder lost its position, its zero differs between them: diagnose \
+                 one of them only. If the data were frozen before, leave these rows out",
                 if *jumps == 1 { "once".to_string() } else { format!("{jumps} times") }
             ),
             Self::NoVelocity => write!(f, "there is no velocity (qd_<joint>); it is differentiated from the position"),

@@ -146,7 +146,7 @@ pub fn dependence(dependence: &Dependence) -> String {
         Regressor::ToolPosition => "the arm's posture, as a force on the tool".into(),
         Regressor::ToolVelocity => "the tool's velocity".into(),
         Regressor::OtherJoint => format!("the motion of {}", other(dependence)),
-        Regressor::OtherTorque => format!("the torque of {}, as where channels are not separated", other(dependence)),
+        Regressor::OtherTorque => format!("the torque of {} (crosstalk between channels?)", other(dependence)),
     }
 }
 

@@ -6,7 +6,7 @@ use super::Reader;
 use super::place::line_of;
 use crate::error::ArmError;
 use crate::inertia::Inertia;
-use crate::joint::Joint;
+use crate::joint::{Joint, JointKind};
 use crate::model::Arm;
 
 /// The length of an arm, below which its links are not compared with it (m).
@@ -132,14 +132,20 @@ impl<'a> Reader<'a> {
         let massless = arm.joints.iter().filter(|joint| joint.inertia.mass == 0.0);
         let mut notes: Vec<String> = massless.map(|joint| self.massless(joint)).collect();
         let tool = arm.tool_frame().link_from_frame.translation.norm();
-        let reach = tool + arm.joints.iter().map(|joint| joint.parent_from_joint.translation.norm()).sum::<f64>();
+        let length = |joint: &Joint| {
+            let travel = joint.limits.upper - joint.limits.lower;
+            let is_finite = joint.kind == JointKind::Prismatic && travel.is_finite();
+            let slides = if is_finite { travel } else { 0.0 };
+            joint.parent_from_joint.translation.norm() + joint.inertia.com.norm() + slides
+        };
+        let reach = tool + arm.joints.iter().map(length).sum::<f64>();
         notes.extend(arm.joints.iter().filter_map(|joint| self.larger_than_the_arm(joint, reach)));
         arm.warnings.extend(notes);
         Ok(())
     }
 
-    /// The warning that the moments of inertia of the link of `joint` are those of a body larger than the whole arm of length `reach` (m),
-    /// as a placeholder of 1 kg m² is.
+    /// The warning that the moments of inertia of the link of `joint` are those of a body larger than the arm with all its links'
+    /// centres of mass and travels in one line, `reach` (m), as a placeholder of 1 kg m² is.
     fn larger_than_the_arm(&self, joint: &Joint, reach: f64) -> Option<String> {
         let moment = joint.inertia.tensor.symmetric_eigenvalues().max();
         let radius = (moment / joint.inertia.mass).sqrt();
@@ -147,7 +153,7 @@ impl<'a> Reader<'a> {
             let name = &joint.link_name;
             format!(
                 "link \"{name}\" (line {}) has a moment of inertia of {moment:.3} kg m² and a mass of {:.3} kg, as a body with a radius of \
-                 gyration of {radius:.2} m, and the whole arm is {reach:.2} m long; is it a placeholder? correct its <inertia>",
+                 gyration of {radius:.2} m, and the arm with all its links in one line is {reach:.2} m long; is it a placeholder? correct its <inertia>",
                 line_of(self.text, "link", name),
                 joint.inertia.mass
             )

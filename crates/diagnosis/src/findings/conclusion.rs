@@ -71,7 +71,7 @@ impl Conclusion {
         let (data, table) = (&study.data, &study.table);
         let mut findings = findings(last);
         let not_there = without_known(data, options, &mut findings);
-        let mut inertials = inertials(last);
+        let mut inertials = inertials(last, options.only.is_some());
         let is_contact_named = !last.contacts().is_empty();
         let transients = transients::search(data, table, study.force(), residual, is_contact_named);
         let mut others = std::mem::take(&mut inertials.findings);
@@ -108,9 +108,12 @@ impl Conclusion {
         }
         let of_moved = unexplained.iter().filter(|open| moves_in_training(last, open));
         let of_moved: Vec<Unexplained> = of_moved.cloned().collect();
-        let links_not_named = leave_out_single_links(&mut findings, &of_moved);
-        let joints: Vec<String> = data.arm.joints().iter().map(|joint| joint.name.clone()).collect();
-        doubt_payload(&mut findings, &joints);
+        let mut links_not_named = None;
+        if options.only.is_none() {
+            links_not_named = leave_out_single_links(&mut findings, &of_moved);
+            let joints: Vec<String> = data.arm.joints().iter().map(|joint| joint.name.clone()).collect();
+            doubt_payload(&mut findings, &joints);
+        }
         if !has_findings {
             beyond_limits(&data.arm, &fit, &transients, &mut unexplained);
             with_places(&located, &mut unexplained);

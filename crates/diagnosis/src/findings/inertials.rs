@@ -62,7 +62,7 @@ pub fn leave_out_single_links(
 /// Makes a payload beside a wrong link of the wrist (`joints` in order) as likely as that link alone: another error of the link than the prior
 /// expects, such as a mirrored centre of mass, resembles a smaller one and a payload together.
 pub fn doubt_payload(findings: &mut [(Finding, Option<usize>)], joints: &[String]) {
-    let wrist = &joints[joints.len().saturating_sub(WRIST)..];
+    let wrist = &joints[joints.len() - WRIST.min(joints.len() / 2)..];
     let is_link = |finding: &&Finding| finding.effect == INERTIAL_PARAMETERS.name && finding.change.is_none();
     let links: Vec<String> = findings
         .iter()
@@ -92,8 +92,9 @@ fn numbers(body: &Inertia) -> [f64; PER_LINK] {
     [body.mass, c.x, c.y, c.z, t(0, 0), t(0, 1), t(1, 1), t(0, 2), t(1, 2), t(2, 2)]
 }
 
-/// The inertial parameters of the links by the background of the final fit.
-pub fn inertials(last: &FinalFit) -> Inertials {
+/// The inertial parameters of the links by the background of the final fit. If other bodies are requested, they are findings whatever
+/// explains as much.
+pub fn inertials(last: &FinalFit, are_requested: bool) -> Inertials {
     let FinalFit { study, judged, resampled, held, .. } = last;
     let (data, table, strengths) = (&study.data, &study.table, &study.strengths);
     let dof = data.arm.dof();
@@ -147,7 +148,8 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         list.links.insert(name, link);
     }
     let (evidence, outside) = study.evidence_of_inertials(held.as_ref(), &judged.named);
-    if evidence < study.thresholds.least_evidence || outside.is_some_and(|outside| outside <= 0.0) {
+    let is_unlikely = evidence < study.thresholds.least_evidence || outside.is_some_and(|outside| outside <= 0.0);
+    if is_unlikely && !are_requested {
         return list;
     }
     let common = strengths.common();
@@ -199,7 +201,10 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         // Two neighbours explain nearly the same. How much less the other one explains depends on the prior, and a URDF whose link was given
         // in a wrong frame or with a wrong sign is not as the prior expects.
         let lost = others.iter().map(|(_, lost)| lost[0] - OF_NEIGHBOUR * loss);
-        let margin = lost.chain(forms.iter().map(|(beyond, _)| *beyond)).fold(score.min(constants), f64::min);
+        // Beside links that all differ, the same holds for one that differs more, unless its body is missing in the URDF.
+        let is_one_of_all = common > 0.0 && strengths.least[link] == 0.0;
+        let apart = if is_one_of_all { score - OF_NEIGHBOUR * evidence } else { score };
+        let margin = lost.chain(forms.iter().map(|(beyond, _)| *beyond)).fold(apart.min(constants), f64::min);
         let nearly = others.iter().filter(|(_, lost)| lost[1] <= allowance(loss));
         let rivals = nearly.map(|&(other, _)| Confusable {
             effect: INERTIAL_PARAMETERS.name,
@@ -229,12 +234,11 @@ pub fn inertials(last: &FinalFit) -> Inertials {
                         .least_share
                         .max(study.thresholds.beside_unmodelled * unnamed.fold(0.0, f64::max))
         };
-        if !(0..dof).any(stands_out) {
+        if !are_requested && !(0..dof).any(stands_out) {
             return;
         }
-        let Some((margin, confusable_with)) = joint.map_or_else(everywhere, instead) else {
-            return;
-        };
+        let weighed = if are_requested { Some((0.0, Vec::new())) } else { joint.map_or_else(everywhere, instead) };
+        let Some((margin, confusable_with)) = weighed else { return };
         list.findings.push(Finding {
             joint: joint.map(|joint| data.arm.joints()[joint].name.clone()),
             parameters,
@@ -252,7 +256,7 @@ pub fn inertials(last: &FinalFit) -> Inertials {
         let parameters = list.links.get(name).map(|link| link.parameters.clone()).unwrap_or_default();
         add(Some(link), &shares[link], parameters);
     }
-    if common >= LEAST_WRONG_EVERYWHERE {
+    if common >= LEAST_WRONG_EVERYWHERE || are_requested && common > 0.0 {
         let (low, high) = strengths.around_common();
         let relative = Parameter { value: common, ci95: [low, high], unit: "1" };
         add(None, &together, BTreeMap::from([("relative", relative)]));
@@ -311,12 +315,12 @@ mod tests {
     fn a_payload_beside_a_wrong_link_of_the_wrist_is_doubtful() {
         let joints = ["a", "b", "c", "d"].map(str::to_owned);
         let payload = Finding { probability: Some(0.98), ..Finding::of(Effect::of(&PAYLOAD)) };
-        for (link, expected) in [("b", 0.5), ("a", 0.98)] {
+        for (link, expected) in [("c", 0.5), ("b", 0.98)] {
             let mut findings = vec![(payload.clone(), None), (self::link(Some(link), &[link]), None)];
             doubt_payload(&mut findings, &joints);
             assert_eq!(findings[0].0.probability, Some(expected), "{link}");
             let rivals = findings[0].0.confusable_with.iter().filter(|rival| rival.joint.as_deref() == Some(link));
-            assert_eq!(rivals.count(), usize::from(link == "b"));
+            assert_eq!(rivals.count(), usize::from(link == "c"));
         }
     }
 }

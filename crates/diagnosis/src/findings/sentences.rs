@@ -159,8 +159,8 @@ pub fn placeholders(arm: &Arm, least: &[f64]) -> Vec<String> {
     }
     if !missing.is_empty() {
         notes.push(format!(
-            "the URDF gives {} no mass: its body is taken as unknown, so that the bodies of its neighbours and a payload may be undetermined; \
-             correct it; if it has none, --urdf-accuracy 0 takes the URDF's masses as exact",
+            "the URDF gives no mass to {}: the body is taken as unknown, so that those of its neighbours and a payload may be undetermined; \
+             correct it; if there is none, --urdf-accuracy 0 takes the URDF's masses as exact",
             names(&missing)
         ));
     }
@@ -278,8 +278,8 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
             format!("move {joint} alone with {other} at rest, then {other} alone with {joint} at rest")
         }
         Some(Regressor::OtherTorque) => format!(
-            "load {other} by hand or with a weight while {joint} rests: if the torque of {joint} follows, the channels are not separated or \
-             the drives are coupled"
+            "move {other} while {joint} rests, with and without a known load: if the torque of {joint} differs from the model's by a constant \
+             part of that of {other}, the channels are not separated, or the drives are coupled"
         ),
         Some(Regressor::OwnPosition) => format!(
             "sweep {joint} slowly over its whole range in both directions, with all other joints at rest, at two speeds"

@@ -51,7 +51,7 @@ struct Residuals<'a> {
     times: Vec<f64>,
     /// The weights of the joints.
     weights: Vec<f64>,
-    /// Whether each joint moves, and does so throughout the length of the filter before and after the row: `[joint][row]`. When it starts
+    /// Whether each joint moves and does not rest within the length of the filter before and after the row: `[joint][row]`. When it starts
     /// or stops, the filter mixes dry friction in motion with that at rest, which holds any torque.
     settled: Vec<Vec<bool>>,
 }
@@ -161,17 +161,23 @@ fn settled(data: &Data, table: &Table, joint: usize) -> Vec<bool> {
     settled
 }
 
-/// Clears the rows with at most `edge` rows to one that is not `moving`.
+/// Clears the rows with at most `edge` rows to a rest, which is longer than `edge` rows that are not `moving`. A reversal is no rest.
 fn leave_out_edges(moving: &mut [bool], edge: usize) {
-    let resting: Vec<usize> = (0..moving.len()).filter(|&row| !moving[row]).collect();
-    for row in resting {
-        let end = (row + edge + 1).min(moving.len());
-        moving[row.saturating_sub(edge)..end].fill(false);
+    let mut row = 0;
+    while row < moving.len() {
+        let length = moving[row..].iter().take_while(|moves| !**moves).count();
+        if length > edge {
+            let end = (row + length + edge).min(moving.len());
+            moving[row.saturating_sub(edge)..end].fill(false);
+            row = end;
+        } else {
+            row += length.max(1);
+        }
     }
 }
 
 impl Residuals<'_> {
-    /// The rows of a window, joint by joint, on which the joint moves, each with its recording.
+    /// The rows of a window, joint by joint, on which the joint moves away from a rest, each with its recording.
     fn rows(&self, window: (f64, f64)) -> impl Iterator<Item = (usize, usize, usize)> {
         let held = self.table.rows.iter().enumerate();
         let held = held.filter(|(recording, _)| !self.data.fitted[*recording]);
@@ -272,12 +278,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_near_a_rest_are_not_settled() {
-        let mut moving = [true, true, true, false, true, true, true, true];
-        leave_out_edges(&mut moving, 2);
-        assert_eq!(moving, [true, false, false, false, false, false, true, true]);
-        let mut always = [true; 4];
-        leave_out_edges(&mut always, 2);
-        assert_eq!(always, [true; 4]);
+    fn rows_near_a_rest_are_not_settled_and_a_reversal_is_no_rest() {
+        let rest = |length: usize| {
+            let mut moving = vec![true; 12];
+            moving[4..4 + length].fill(false);
+            leave_out_edges(&mut moving, 2);
+            moving.iter().map(|&moves| u8::from(moves)).collect::<Vec<u8>>()
+        };
+        assert_eq!(rest(0), [1; 12]);
+        assert_eq!(rest(2), [1, 1, 1, 1, 0, 0, 1, 1, 1, 1, 1, 1]);
+        assert_eq!(rest(3), [1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1]);
+        assert_eq!(rest(8), [1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     }
 }

@@ -13,7 +13,7 @@ use crate::thresholds::{
 pub struct Strengths {
     /// ρ of each link's inertial parameters.
     pub links: Vec<f64>,
-    /// The least ρ of each link, whatever the evidence prefers: the centre of mass of some links is a placeholder.
+    /// The least ρ of each link, whatever the evidence prefers: the URDF has a placeholder for the body of some links.
     pub least: Vec<f64>,
     /// The form of each joint's friction, relative to its prior.
     pub friction: f64,
@@ -142,7 +142,7 @@ impl Strengths {
         next
     }
 
-    /// Whether the centre of mass of some link is a placeholder.
+    /// Whether the URDF has a placeholder for the body of some link.
     pub fn has_placeholders(&self) -> bool {
         self.least.iter().any(|&least| least > 0.0)
     }

@@ -9,7 +9,8 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
 use crate::thresholds::{LEAST_AT_REVERSALS, SLOWEST_AT_REVERSALS};
 
-/// Names Stribeck friction in place of Coulomb friction, if the rows of the final fit require it. The search does without the rows near
+/// Names Stribeck friction in place of Coulomb friction, if the rows of the final fit require it and it predicts the held-out recordings better. The
+/// search does without the rows near
 /// reversals, on which the friction of a joint that turns quickly is larger, if it falls at all.
 pub fn at_reversals(study: &mut Study, judged: &mut Judged) {
     let coulomb = Hypothesis::of(&COULOMB_FRICTION);
@@ -35,10 +36,12 @@ pub fn at_reversals(study: &mut Study, judged: &mut Judged) {
         let is_slow = |c: usize| stribeck_velocity(&study.terms(c)).is_some_and(|velocity| velocity >= slowest);
         let is_possible =
             best.set.iter().any(|&c| is_form(&study.candidates[c]) && is_slow(c) && problem.is_possible(c, &best.fit));
-        let predicts_more = study
-            .held_products()
-            .is_none_or(|held| held.loss_of(&study.table, &best.fit) < held.loss_of(&study.table, &judged.named.fit));
-        if is_possible && predicts_more && best.score < judged.named.score - LEAST_AT_REVERSALS {
+        let predicts_more = || {
+            study.held_products().is_none_or(|held| {
+                held.loss_of(&study.table, &best.fit) < held.loss_of(&study.table, &judged.named.fit)
+            })
+        };
+        if is_possible && best.score < judged.named.score - LEAST_AT_REVERSALS && predicts_more() {
             study.note("the rows near reversals require it", &judged.named, &best);
             judged.members = judge::describe(&problem, &best);
             judged.named = best;

@@ -25,14 +25,22 @@ use crate::thresholds::{
 /// held-out error of a joint, effects that do not reduce it, and effects with little evidence whose size may be zero.
 pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
     let mut constants_tried = Vec::new();
+    let (mut harmful_friction, mut restored): (Vec<usize>, Vec<usize>) = Default::default();
     loop {
         relinearise(study, judged, false);
+        restore(study, judged, std::mem::take(&mut harmful_friction));
         torque_constants::name_those_beyond_tolerance(study, judged, &mut constants_tried);
         make_possible(study, judged);
         breakaway::at_reversals(study, judged);
         let before = judged.named.set.len();
+        let named = judged.named.set.clone();
 
         guard(study, judged);
+        let is_friction = |&c: &usize| study.candidates[c].hypothesis.is_plain_friction() && study.always_acts(c);
+        let dropped = named.into_iter().filter(|c| !judged.named.set.contains(c));
+        // Each is restored once.
+        harmful_friction.extend(dropped.filter(is_friction).filter(|c| !restored.contains(c)));
+        restored.extend(&harmful_friction);
         prove(study, judged);
 
         give_up(study, judged);
@@ -69,6 +77,28 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                 None => return resampled,
             },
         }
+    }
+}
+
+/// Adds `friction` again that was removed because of a joint's held-out error, if it is likely beside the background that replaced it: beside a
+/// wrong link, friction may have been a part of the error. Candidates of the catalogue keep their numbers.
+fn restore(study: &mut Study, judged: &mut Judged, friction: Vec<usize>) {
+    if friction.is_empty() {
+        return;
+    }
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let mut next = judged.named.clone();
+    for c in friction {
+        let with = problem.choose([&next.set[..], &[c]].concat(), &next.fit.weights);
+        if with.score < next.score && problem.is_possible(c, &with.fit) {
+            next = with;
+        }
+    }
+    if next.set.len() > judged.named.set.len() {
+        study.note("likely again beside another background", &judged.named, &next);
+        judged.members = judge::describe(&problem, &next);
+        judged.named = next;
     }
 }
 
@@ -306,10 +336,16 @@ fn better_outside(
         };
         (0..study.data.motions.dof).filter_map(of).sum::<f64>()
     };
-    let corrected = |joint: &usize| study.strengths.friction_of(Some(*joint)) > 0.0;
-    let mut harmed: Vec<Vec<usize>> = vec![moving.to_vec(), [moving, resting].concat()];
-    harmed.extend([moving, resting].concat().into_iter().map(|joint| vec![joint]));
-    harmed.retain(|joints| joints.iter().any(corrected));
+    let is_corrected = |joint: &usize| study.strengths.friction_of(Some(*joint)) > 0.0;
+    let [moving, resting] =
+        [moving, resting].map(|joints| joints.iter().copied().filter(is_corrected).collect::<Vec<_>>());
+    let mut harmed: Vec<Vec<usize>> = Vec::new();
+    let both = [&moving[..], &resting].concat();
+    for joints in [moving, both.clone()].into_iter().chain(both.iter().map(|&joint| vec![joint])) {
+        if !joints.is_empty() && !harmed.contains(&joints) {
+            harmed.push(joints);
+        }
+    }
     let on_joints = harmed.iter().map(|joints| study.strengths.without_friction_of(joints));
     let trials = on_joints.chain(study.stated.weaker(&study.strengths)).map(|strengths| {
         let products = study.products_at(&strengths);

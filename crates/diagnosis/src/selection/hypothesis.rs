@@ -73,8 +73,11 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         if let Some(next) = study.with_requested_bodies(&links, &selected) {
             selected = next;
         } else {
-            let remark =
-                "inertial_parameters: the recordings are as likely with the URDF's bodies; they are not fitted";
+            let remark = if study.stated.links.is_some() {
+                "inertial_parameters: --urdf-accuracy states how much the bodies may differ; no others are fitted"
+            } else {
+                "inertial_parameters: the recordings are as likely with the URDF's bodies; no others are fitted"
+            };
             study.data.motions.remarks.push(remark.to_owned());
         }
     }

@@ -44,6 +44,7 @@ pub fn in_place_of_link(study: &Study, selected: &Selection, link: usize) -> Vec
     let strengths = study.strengths.with_link_as_most(link);
     let mut forms: Vec<(f64, Rival)> = beside(study, selected, &strengths)
         .into_iter()
+        .chain(drive_inertias_beside(study, selected, &strengths))
         .filter(|(next, _)| is_nearly_as_good(next, selected))
         .map(|(next, form)| (next.score - selected.score, form))
         .collect();
@@ -62,6 +63,25 @@ pub fn in_place_of_link(study: &Study, selected: &Selection, link: usize) -> Vec
 /// them, and links that are all wrong cost less, however wrong they are.
 fn is_nearly_as_good(next: &Selection, selected: &Selection) -> bool {
     next.score < selected.score + NEARLY_AS_LIKELY || next.fit.loss < selected.fit.loss + NEARLY_NATS
+}
+
+/// The drives' inertias that are likely together beside links of these `strengths`, each with the fit of all. Nearly every URDF omits them on
+/// every joint.
+fn drive_inertias_beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Selection, Rival)> {
+    let products = study.products_at(strengths);
+    let problem = study.problem(&products);
+    let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
+    let is_free = |&c: &usize| {
+        let candidate = &study.candidates[c];
+        candidate.hypothesis.is(&ROTOR_INERTIA)
+            && problem.acts(candidate) == Acts::Always
+            && !selected.set.iter().any(|&other| other == c || problem.exclude(c, other))
+    };
+    let free: Vec<usize> = study.allowed().into_iter().filter(is_free).collect();
+    let with = problem.reweighted(problem.forward(base, &free));
+    let is_whole = selected.set.iter().all(|c| with.set.contains(c));
+    let added = with.set.iter().filter(|c| is_whole && !selected.set.contains(c));
+    added.map(|&c| (with.clone(), (study.candidates[c].hypothesis, study.candidates[c].joint))).collect()
 }
 
 /// The most promising special forms beside links of these `strengths`, each with its fit.

@@ -178,11 +178,11 @@ pub const MOST_SPECIAL_FORMS: usize = 3;
 /// In the control by full identification, the standard deviation of the prior on inertial parameters, in multiples of their size. It is so
 /// wide that it only regularises the normal equations.
 pub const FREE_INERTIALS: f64 = 3.0;
-/// Another link must explain less than a link that differs from the URDF, by this part of what the link explains and what a probability
-/// requires. Source: three simulated arms with one centre of mass in the wrong frame, whose links lose 1.5 to 2.9 % to a false neighbour;
-/// the neighbours of true links lose 7 % and more.
+/// The part of what a wrong link explains that must be lost with any other link in its place; only what is lost beyond it counts towards the
+/// probability. Source: three simulated arms with one centre of mass in the wrong frame, whose true link loses 1.5 to 2.9 % in the place
+/// of a false neighbour; the neighbours of six true links lose 7 % and more.
 pub const OF_NEIGHBOUR: f64 = 0.04;
-/// The number of last links of which a wrong one resembles a payload. Source: a simulated arm whose last link but one has a mirrored centre
+/// The number of last links of which a wrong one resembles a payload, half of the links at most. Source: a simulated arm whose last link but one has a mirrored centre
 /// of mass.
 pub const WRIST: usize = 3;
 /// A link that differs from the URDF more than most is named if deviating torque constants explain less in its place, by this evidence

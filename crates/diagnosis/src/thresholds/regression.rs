@@ -71,8 +71,8 @@ pub const USUAL_STRENGTH: f64 = 0.3;
 pub const LINK_STRENGTHS: [f64; 7] = [0.0, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0];
 /// The strengths that are tried on one link in addition to the common one. Source: first background.
 pub const OWN_STRENGTHS: [f64; 3] = [0.1, 0.3, 1.0];
-/// The strength of the links whose centre of mass is exactly at the joint's origin in the URDF, a placeholder, if that is not believed: the
-/// centre of mass then deviates by this part of the link's length. Source: seven pairs of published inertial parameters of the UR3, UR5e,
+/// The strength of the links whose body is a placeholder in the URDF (no mass, or the centre of mass exactly at the joint's origin), if that is
+/// not believed: the centre of mass then deviates by this part of the link's length. Source: seven pairs of published inertial parameters of the UR3, UR5e,
 /// UR10 and Kinova Gen3; 1.0 gives the same names.
 pub const OF_PLACEHOLDERS: f64 = 0.5;
 /// The mass of a link, over the median link's, below which the URDF has none, so that its body is missing and the median link's mass is the

@@ -1,6 +1,6 @@
 //! Requested effects are fitted as they are, right ones well and wrong ones badly, and no other effect is named.
 
-use crate::support::{ELBOW, Motion, SHOULDER, diagnosed_with, trio};
+use crate::support::{ELBOW, Motion, SHOULDER, baseline_friction, diagnosed_with, trio};
 use diagnosis::{Diagnosis, DiagnosisError, Options, Wanted};
 
 /// Friction on the shoulder, a stiction curve on the elbow, and a ripple there.
@@ -102,13 +102,18 @@ fn unknown_effects_and_joints_are_refused() {
     }
 }
 
-/// Another body of one link can be requested; where the URDF's is right, nothing is fitted, and a note says so.
+/// Another body of one link can be requested, also where friction that is not requested remains; where the URDF's is right, nothing is fitted, and a note says so.
 #[test]
 fn another_body_of_a_link_can_be_requested() {
     let options = Options { only: Some(wanted(&[("inertial_parameters", Some("elbow"))])), ..Options::default() };
     for (factor, is_found) in [(1.5, true), (1.0, false)] {
         let heavier = trio().with_scaled_link(ELBOW, factor);
-        let diagnosis = diagnosed_with(&trio(), &heavier, &|_, _| {}, &options).expect("it can be requested");
+        let friction = |motion: &mut Motion, tau: &mut [f64]| {
+            if is_found {
+                baseline_friction(motion, tau);
+            }
+        };
+        let diagnosis = diagnosed_with(&trio(), &heavier, &friction, &options).expect("it can be requested");
         let found: Vec<_> = diagnosis.report.findings.iter().map(|finding| finding.joint.as_deref()).collect();
         assert_eq!(found, if is_found { vec![Some("elbow")] } else { vec![] }, "{factor}");
         let notes = diagnosis.remarks.join("; ");

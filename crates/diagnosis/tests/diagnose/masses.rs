@@ -303,7 +303,7 @@ fn a_placeholder_is_not_believed() {
         let body = Inertia { com: Vector3::zeros(), ..arm.joints()[link].inertia };
         arm.with_link_inertia(link, body)
     };
-    let urdf = crate::support::TRIO.replace("</robot>", "<link name=\"tool\"/><joint name=\"tip\" type=\"fixed\"><parent link=\"fore\"/><child link=\"tool\"/><origin xyz=\"0.3 0 0\"/></joint></robot>");
+    let urdf = TRIO.replace("</robot>", "<link name=\"tool\"/><joint name=\"tip\" type=\"fixed\"><parent link=\"fore\"/><child link=\"tool\"/><origin xyz=\"0.3 0 0\"/></joint></robot>");
     let robot = Arm::from_urdf_text(&urdf, "trio.urdf").expect("it is an arm");
     let believed = placeholder(placeholder(robot.clone(), crate::support::SHOULDER), crate::support::ELBOW);
     let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
