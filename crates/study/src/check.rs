@@ -283,7 +283,8 @@ fn torques(arm: &Arm, smooth: &Smooth, moves: &[bool]) -> Vec<Misfit> {
         if matters && factor > 0.0 && !(MOTOR_SIDE..OTHER_UNIT).contains(&size) && !is_drive() {
             let what = if size < 1.0 { "motor side, or a current" } else { "another unit" };
             let text = format!(
-                "the torque is {size:.2e} times the model's: {what}? Give tau_scale (about {}) in a column map",
+                "the torque is {} times the model's: {what}? Give tau_scale (about {}) in a column map",
+                rounded(size, 2),
                 rounded(1.0 / size, 2)
             );
             let scale = Change::scale(names[joint], 1.0 / size);

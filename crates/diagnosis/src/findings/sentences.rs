@@ -7,7 +7,7 @@ use effects::arm::INERTIAL_PARAMETERS;
 use effects::{Effect, Regressor};
 
 use crate::data::Data;
-use crate::report::{Change, Dependence, Finding, JointFit, Parameter};
+use crate::report::{Change, Dependence, Finding, JointFit, Parameter, TimeWindow};
 use crate::search::study::moved;
 use crate::selection::naming::may_be_nothing;
 use crate::thresholds::{ALIKE_SIZES, LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, NEARLY_NO_MASS, SURE_CHANGE};
@@ -312,6 +312,14 @@ pub fn next_experiment(joint: &str, on: Option<&Dependence>) -> String {
             format!("move {joint} alone at three constant speeds, in both directions, twice")
         }
     }
+}
+
+/// The experiment for a residual that lasts for a moment, the first time of which is `window`.
+pub fn repeat_around(window: &TimeWindow) -> String {
+    format!(
+        "repeat the motion at {:.1} s of {}: a residual that does not return was an event, such as a knock or lost samples",
+        window.start, window.recording
+    )
 }
 
 /// The experiment for residuals of several joints that change with time.

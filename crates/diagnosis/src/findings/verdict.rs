@@ -67,6 +67,7 @@ pub fn unexplained(
             on.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let name = study.data.arm.joints()[joint].name.clone();
             let transients = in_transients.remove(&joint).map(|(_, windows)| windows);
+            let is_transient = transients.is_some();
             let time: Vec<TimeWindow> = transients.unwrap_or_else(|| {
                 located
                     .iter()
@@ -74,8 +75,10 @@ pub fn unexplained(
                     .map_or(Vec::new(), |located: &Located| located.time.clone())
             });
             let depends_on: Vec<Dependence> = on.into_iter().map(|(_, on)| on).collect();
+            let event = is_transient.then(|| time.first()).flatten().filter(|_| depends_on.len() == 1);
             Unexplained {
-                next: sentences::next_experiment(&name, depends_on.first()),
+                next: event
+                    .map_or_else(|| sentences::next_experiment(&name, depends_on.first()), sentences::repeat_around),
                 joint: name,
                 share,
                 depends_on,

@@ -183,3 +183,26 @@ fn a_contact_at_the_beginning_of_a_recording_is_not_named() {
     assert!(pushed_at(6.0));
     assert!(!pushed_at(0.02));
 }
+
+/// What shakes two joints for a moment in the held-out recording, and is no force on the tool, is looked for there.
+#[test]
+fn a_moment_that_is_unexplained_is_repeated() {
+    let recordings: Vec<_> = (0..3)
+        .map(|variant| {
+            let injected = |motion: &mut Motion, tau: &mut [f64]| {
+                baseline_friction(motion, tau);
+                if variant == 2 && (6.0..6.4).contains(&motion.time) {
+                    tau[TURN] += 9.0 * (31.0 * motion.time).sin();
+                    tau[ELBOW] += 9.0 * (47.0 * motion.time).cos();
+                }
+            };
+            regular(&recorded(&trio(), variant, 16.0, &injected))
+        })
+        .collect();
+    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let open = &diagnosis.report.unexplained[0];
+    assert_eq!(open.joint, "elbow");
+    // The recording has a clock of its own, which begins at 2000 s.
+    assert!(open.time.iter().all(|window| window.start > 2005.5 && window.end < 2007.0), "{open:?}");
+    assert!(open.next.starts_with("repeat the motion at "), "{open:?}");
+}
