@@ -84,12 +84,20 @@ pub fn search(
     let settled = (0..data.motions.dof).map(|joint| settled(data, table, joint)).collect();
     let residuals = Residuals { data, table, force, residual, times, weights, settled };
     let mut pushes: Vec<Push> = Vec::new();
+    let is_felt = |powers: &[f64]| {
+        let felt = powers.iter().filter(|power| power.sqrt() > ABOVE_USUAL).count();
+        felt >= data.motions.dof.min(LEAST_PUSHED)
+    };
+    let mut while_moving = 0;
     for (from, to) in windows {
-        let Some((recording, powers)) = residuals.power((from, to)) else {
+        let power = residuals.power((from, to), |_, _| true);
+        while_moving += usize::from(power.is_some_and(|(_, powers)| is_felt(&powers)));
+        // A joint that only starts or stops shows no transient.
+        let settled = |joint: usize, row: usize| residuals.settled[joint][row];
+        let Some((recording, powers)) = residuals.power((from, to), settled) else {
             continue;
         };
-        let felt = powers.iter().filter(|power| power.sqrt() > ABOVE_USUAL).count();
-        if felt < data.motions.dof.min(LEAST_PUSHED) {
+        if !is_felt(&powers) {
             continue;
         }
         let name = data.motions.sources[recording].name.clone();
@@ -113,8 +121,9 @@ pub fn search(
             }
         }
     }
-    // Transients that recur are an error of the model and not contacts.
-    if pushes.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>() > MOST_TRANSIENTS {
+    // Transients that recur, also where joints start or stop, are an error of the model and not contacts.
+    let apart = pushes.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>();
+    if while_moving.max(apart) > MOST_TRANSIENTS {
         return Transients::default();
     }
     transients.contact = residuals.contact(&pushes);
@@ -177,7 +186,7 @@ fn leave_out_edges(moving: &mut [bool], edge: usize) {
 }
 
 impl Residuals<'_> {
-    /// The rows of a window, joint by joint, on which the joint moves away from a rest, each with its recording.
+    /// The rows of a window, joint by joint, on which the joint moves, each with its recording.
     fn rows(&self, window: (f64, f64)) -> impl Iterator<Item = (usize, usize, usize)> {
         let held = self.table.rows.iter().enumerate();
         let held = held.filter(|(recording, _)| !self.data.fitted[*recording]);
@@ -186,14 +195,15 @@ impl Residuals<'_> {
                 .filter(move |&row| self.times[row] >= window.0 && self.times[row] <= window.1)
                 .flat_map(move |row| (0..self.data.motions.dof).map(move |joint| (recording, row, joint)))
         })
-        .filter(|&(_, row, joint)| self.settled[joint][row])
+        .filter(|&(_, row, joint)| self.table.joints[joint].moving[row])
     }
 
-    /// The recording of a window, and each joint's mean weighted power there.
-    fn power(&self, window: (f64, f64)) -> Option<(usize, Vec<f64>)> {
+    /// The recording of a window, and each joint's mean weighted power there, on the rows of a moving joint that count: a function of the joint
+    /// and the row.
+    fn power(&self, window: (f64, f64), counts: impl Fn(usize, usize) -> bool) -> Option<(usize, Vec<f64>)> {
         let mut sums = vec![(0.0, 0.0); self.data.motions.dof];
         let mut at = None;
-        for (recording, row, joint) in self.rows(window) {
+        for (recording, row, joint) in self.rows(window).filter(|&(_, row, joint)| counts(joint, row)) {
             at = Some(recording);
             sums[joint].0 += self.weights[joint] * self.residual[joint][row].powi(2);
             sums[joint].1 += 1.0;
