@@ -6,7 +6,8 @@ use effects::drive::ROTOR_INERTIA;
 use rayon::prelude::*;
 
 use crate::regression::strengths::Strengths;
-use crate::search::problem::Selection;
+use crate::search::candidate::Candidate;
+use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
 use crate::selection::rivals::Rival;
 use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, NEARLY_NATS, SPECIAL_FORMS_TRIED};
@@ -21,7 +22,10 @@ pub fn special_forms(study: &Study, selected: &Selection) -> (f64, Vec<Rival>) {
     let smaller: Vec<Strengths> = study.strengths.weaker().into_iter().filter(is_smaller).collect();
     let mut scores: Vec<(f64, Rival)> = smaller
         .into_par_iter()
-        .flat_map_iter(|strengths| beside(study, selected, &strengths))
+        .flat_map_iter(|strengths| {
+            let products = study.products_at(&strengths);
+            beside(&Beside::new(study, study.problem(&products), selected))
+        })
         .filter(|(next, _)| is_nearly_as_good(next, selected))
         .map(|(next, form)| (next.score, form))
         .collect();
@@ -42,9 +46,11 @@ pub fn special_forms(study: &Study, selected: &Selection) -> (f64, Vec<Rival>) {
 /// score beyond that of `selected` (nats), the most likely first.
 pub fn in_place_of_link(study: &Study, selected: &Selection, link: usize) -> Vec<(f64, Rival)> {
     let strengths = study.strengths.with_link_as_most(link);
-    let mut forms: Vec<(f64, Rival)> = beside(study, selected, &strengths)
+    let products = study.products_at(&strengths);
+    let most = Beside::new(study, study.problem(&products), selected);
+    let mut forms: Vec<(f64, Rival)> = beside(&most)
         .into_iter()
-        .chain(drive_inertias_beside(study, selected, &strengths))
+        .chain(drive_inertias_beside(&most))
         .filter(|(next, _)| is_nearly_as_good(next, selected))
         .map(|(next, form)| (next.score - selected.score, form))
         .collect();
@@ -65,42 +71,59 @@ fn is_nearly_as_good(next: &Selection, selected: &Selection) -> bool {
     next.score < selected.score + NEARLY_AS_LIKELY || next.fit.loss < selected.fit.loss + NEARLY_NATS
 }
 
-/// The drives' inertias that are likely together beside links of these `strengths`, each with the fit of all. Nearly every URDF omits them on
-/// every joint.
-fn drive_inertias_beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Selection, Rival)> {
-    let products = study.products_at(strengths);
-    let problem = study.problem(&products);
-    let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
-    let is_free = |&c: &usize| {
-        let candidate = &study.candidates[c];
-        candidate.hypothesis.is(&ROTOR_INERTIA)
-            && problem.acts(candidate) == Acts::Always
-            && !selected.set.iter().any(|&other| other == c || problem.exclude(c, other))
-    };
-    let free: Vec<usize> = study.allowed().into_iter().filter(is_free).collect();
-    let with = problem.reweighted(problem.forward(base, &free));
-    let is_whole = selected.set.iter().all(|c| with.set.contains(c));
-    let added = with.set.iter().filter(|c| is_whole && !selected.set.contains(c));
-    added.map(|&c| (with.clone(), (study.candidates[c].hypothesis, study.candidates[c].joint))).collect()
+/// A selection beside links of other strengths.
+struct Beside<'a> {
+    study: &'a Study,
+    /// The fit beside these links.
+    problem: Problem<'a>,
+    selected: &'a Selection,
+    /// `selected`, fitted again beside these links.
+    base: Selection,
 }
 
-/// The most promising special forms beside links of these `strengths`, each with its fit.
-fn beside(study: &Study, selected: &Selection, strengths: &Strengths) -> Vec<(Selection, Rival)> {
-    let products = study.products_at(strengths);
-    let problem = study.problem(&products);
-    let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
-    let is_free = |&c: &usize| {
-        let candidate = &study.candidates[c];
-        // A rotor adds to the inertia of its link about the joint's axis, which is all that a first link on a vertical axis shows.
+impl<'a> Beside<'a> {
+    fn new(study: &'a Study, problem: Problem<'a>, selected: &'a Selection) -> Self {
+        let base = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
+        Self { study, problem, selected, base }
+    }
+
+    /// The candidates that always act, may be added, and are `wanted`.
+    fn free(&self, wanted: impl Fn(&Candidate) -> bool) -> Vec<usize> {
+        let is_free = |&c: &usize| {
+            let candidate = &self.study.candidates[c];
+            wanted(candidate)
+                && self.problem.acts(candidate) == Acts::Always
+                && !self.selected.set.iter().any(|&other| other == c || self.problem.exclude(c, other))
+        };
+        self.study.allowed().into_iter().filter(is_free).collect()
+    }
+
+    fn rival(&self, c: usize) -> Rival {
+        (self.study.candidates[c].hypothesis, self.study.candidates[c].joint)
+    }
+}
+
+/// The drives' inertias that are likely together, each with the fit of all. Nearly every URDF omits them on every joint.
+fn drive_inertias_beside(most: &Beside<'_>) -> Vec<(Selection, Rival)> {
+    let Beside { problem, selected, base, .. } = most;
+    let free = most.free(|candidate| candidate.hypothesis.is(&ROTOR_INERTIA));
+    let with = problem.reweighted(problem.forward(base.clone(), &free));
+    let is_whole = selected.set.iter().all(|c| with.set.contains(c));
+    let added = with.set.iter().filter(|c| is_whole && !selected.set.contains(c));
+    added.map(|&c| (with.clone(), most.rival(c))).collect()
+}
+
+/// The most promising special forms, each with its fit.
+fn beside(these: &Beside<'_>) -> Vec<(Selection, Rival)> {
+    let Beside { problem, selected, base, .. } = these;
+    // A rotor adds to the inertia of its link about the joint's axis, which is all that a first link on a vertical axis shows.
+    let free = these.free(|candidate| {
         candidate.hypothesis.name().is_some()
             && (candidate.hypothesis.spec().may_be_inertial || candidate.hypothesis.is(&ROTOR_INERTIA))
-            && problem.acts(candidate) == Acts::Always
-            && !selected.set.iter().any(|&other| other == c || problem.exclude(c, other))
-    };
-    let free: Vec<usize> = study.allowed().into_iter().filter(is_free).collect();
-    let mut promises = problem.promises(&base, &free);
+    });
+    let mut promises = problem.promises(base, &free);
     promises.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let of = |c: usize| (study.candidates[c].hypothesis, study.candidates[c].joint);
+    let of = |c: usize| these.rival(c);
     let mut forms: Vec<Rival> = Vec::new();
     for &(promise, c) in &promises {
         if promise > 0.0 && forms.len() < SPECIAL_FORMS_TRIED && !forms.contains(&of(c)) {
