@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::chain::FixedJoint;
 use crate::inertia::Inertia;
-use crate::joint::{Joint, JointKind};
+use crate::joint::Joint;
 use crate::pose::Pose;
 use crate::visual::Visual;
 
@@ -29,17 +29,6 @@ pub struct FixedBody {
     pub name: String,
     /// Its inertia in the frame of the last moving link, of which [`Joint::inertia`] is the sum.
     pub inertia: Inertia,
-}
-
-/// A link of whose body the URDF has a placeholder.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placeholder {
-    /// The link, as an index into [`Arm::joints`].
-    pub link: usize,
-    /// Its mass (kg): the URDF's, or the median link's if the URDF has none.
-    pub mass: f64,
-    /// Its length from its frame to the next joint or the tool (m).
-    pub length: f64,
 }
 
 /// A serial arm of revolute and prismatic joints on a fixed base.
@@ -113,33 +102,6 @@ impl Arm {
     /// Gravitational acceleration in the base frame (m/s²), by default 9.81 along −z.
     pub fn gravity(&self) -> &Vector3<f64> {
         &self.gravity
-    }
-
-    /// The links of whose body the URDF has a placeholder: those whose centre of mass is exactly at the origin of their own frame, if they
-    /// are longer than `length` (m), because the true one is somewhere along the link, and those with less than `part` of the median
-    /// link's mass, because their body is missing. A first link about a vertical axis, of which only the moment of inertia counts, is left
-    /// out.
-    pub fn placeholders(&self, length: f64, part: f64) -> Vec<Placeholder> {
-        let mut masses: Vec<f64> =
-            self.joints.iter().map(|joint| joint.inertia.mass).filter(|&mass| mass > 0.0).collect();
-        masses.sort_by(f64::total_cmp);
-        let usual = masses.get(masses.len() / 2).copied().unwrap_or(0.0);
-        let tool = self.tool_frame();
-        let ends = self.joints[1..].iter().map(|next| &next.parent_from_joint);
-        let ends = ends.chain(std::iter::once(&tool.link_from_frame));
-        let lengths = ends.map(|end| end.translation.norm()).enumerate();
-        let first = &self.joints[0];
-        let axis = first.parent_from_joint.rotation * first.axis;
-        let is_upright = axis.cross(&self.gravity).norm() < 1e-3 * self.gravity.norm();
-        let counts = |link: usize| link > 0 || !(is_upright && first.kind == JointKind::Revolute);
-        let placeholder = |(link, of_link): (usize, f64)| {
-            let body = &self.joints[link].inertia;
-            let is_missing = body.mass < part * usual;
-            let has_no_centre = body.mass > 0.0 && body.com == Vector3::zeros() && of_link > length;
-            let mass = if is_missing { usual } else { body.mass };
-            (counts(link) && (is_missing || has_no_centre)).then_some(Placeholder { link, mass, length: of_link })
-        };
-        lengths.filter_map(placeholder).collect()
     }
 
     /// Doubtful values in the URDF that were accepted.

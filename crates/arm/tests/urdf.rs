@@ -256,4 +256,16 @@ fn moments_of_inertia_larger_than_the_arm_are_doubted() {
         "{doubted}"
     );
     assert!(!doubted.contains("upper"), "{doubted}");
+    // A placeholder that is smaller than the arm has three equal moments; a body of its mass and length is taken in its place.
+    let bodies = |moment: &str| {
+        let arm = Arm::from_urdf_text(&urdf(moment), "two.urdf").expect("it is an arm");
+        arm.bodies_for_placeholders()
+    };
+    assert!(bodies("1e-3").is_empty());
+    for moment in ["0.02", "1"] {
+        let [(1, body)] = bodies(moment)[..] else { panic!("{moment}: the second link") };
+        assert_eq!((body.mass, body.com.x), (0.2, 0.1));
+        let rod = 0.2 * 0.2 * 0.2 / 12.0;
+        assert!((body.tensor - rod * arm::Matrix3::identity()).amax() < 1e-12, "{}", body.tensor);
+    }
 }

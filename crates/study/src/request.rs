@@ -13,6 +13,7 @@ use torque::summed;
 use crate::effect_file::EffectFile;
 use crate::inputs::{self, Opened, Recordings, Role};
 use crate::notes::Notes;
+use crate::placeholders::{Replaced, replaced};
 use crate::robot::{self, RobotFile};
 use crate::urdf_friction::{UrdfFriction, known_friction};
 
@@ -92,7 +93,16 @@ impl Request {
         let mut known = self.known(&arm)?;
         let (friction, remark) = known_friction(&robot, &arm, self.urdf_friction, &known)?;
         known.splice(0..0, friction);
-        if let Some(remark) = remark {
+        let mut remarks = vec![remark];
+        let mut checked = arm.clone();
+        if self.urdf_accuracy != Some(0.0)
+            && let Some(Replaced { arm, effects, remark }) = replaced(&arm, &known)
+        {
+            checked = arm;
+            known.splice(0..0, effects);
+            remarks.push(Some(remark));
+        }
+        for remark in remarks.into_iter().flatten() {
             listener.note(&format!("{}: {remark}", robot.path.display()));
         }
         let mut only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
@@ -108,7 +118,7 @@ impl Request {
         listener.doing(Step::new(0.0, "reading"));
         let mut notes = Notes::default();
         let recordings =
-            inputs::read(opened, (&arm, &known), &|doing| listener.doing(Step::new(0.0, doing)), &mut notes);
+            inputs::read(opened, (&checked, &known), &|doing| listener.doing(Step::new(0.0, doing)), &mut notes);
         listener.recordings(&notes);
         let recordings = recordings?;
         let warnings = recordings.iter().flat_map(|recording| recording.warnings.clone());

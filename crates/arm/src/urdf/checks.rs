@@ -6,11 +6,8 @@ use super::Reader;
 use super::place::line_of;
 use crate::error::ArmError;
 use crate::inertia::Inertia;
-use crate::joint::{Joint, JointKind};
+use crate::joint::Joint;
 use crate::model::Arm;
-
-/// The length of an arm, below which its links are not compared with it (m).
-const LEAST_REACH: f64 = 0.05;
 
 impl<'a> Reader<'a> {
     /// Checks that the links form one tree, and returns its root.
@@ -131,33 +128,23 @@ impl<'a> Reader<'a> {
         }
         let massless = arm.joints.iter().filter(|joint| joint.inertia.mass == 0.0);
         let mut notes: Vec<String> = massless.map(|joint| self.massless(joint)).collect();
-        let tool = arm.tool_frame().link_from_frame.translation.norm();
-        let length = |joint: &Joint| {
-            let travel = joint.limits.upper - joint.limits.lower;
-            let is_finite = joint.kind == JointKind::Prismatic && travel.is_finite();
-            let slides = if is_finite { travel } else { 0.0 };
-            joint.parent_from_joint.translation.norm() + joint.inertia.com.norm() + slides
-        };
-        let reach = tool + arm.joints.iter().map(length).sum::<f64>();
-        notes.extend(arm.joints.iter().filter_map(|joint| self.larger_than_the_arm(joint, reach)));
+        notes.extend(arm.joints.iter().filter_map(|joint| self.larger_than_the_arm(arm, joint)));
         arm.warnings.extend(notes);
         Ok(())
     }
 
     /// The warning that the moments of inertia of the link of `joint` are those of a body larger than the arm with all its links'
-    /// centres of mass and travels in one line, `reach` (m), as a placeholder of 1 kg m² is.
-    fn larger_than_the_arm(&self, joint: &Joint, reach: f64) -> Option<String> {
-        let moment = joint.inertia.tensor.symmetric_eigenvalues().max();
-        let radius = (moment / joint.inertia.mass).sqrt();
-        (joint.inertia.mass > 0.0 && reach > LEAST_REACH && radius > reach).then(|| {
-            let name = &joint.link_name;
-            format!(
-                "link \"{name}\" (line {}) has a moment of inertia of {moment:.3} kg m² and a mass of {:.3} kg, as a body with a radius of \
-                 gyration of {radius:.2} m, and the arm with all its links in one line is {reach:.2} m long; is it a placeholder? correct its <inertia>",
-                line_of(self.text, "link", name),
-                joint.inertia.mass
-            )
-        })
+    /// centres of mass and travels in one line, as a placeholder of 1 kg m² is.
+    fn larger_than_the_arm(&self, arm: &Arm, joint: &Joint) -> Option<String> {
+        let (radius, reach) = arm.larger_than_the_arm(joint)?;
+        let name = &joint.link_name;
+        Some(format!(
+            "link \"{name}\" (line {}) has a moment of inertia of {:.3} kg m² and a mass of {:.3} kg, as a body with a radius of \
+             gyration of {radius:.2} m, and the arm with all its links in one line is {reach:.2} m long; is it a placeholder? correct its <inertia>",
+            line_of(self.text, "link", name),
+            joint.inertia.tensor.symmetric_eigenvalues().max(),
+            joint.inertia.mass
+        ))
     }
 
     /// The warning that the link of `joint` has no mass.
