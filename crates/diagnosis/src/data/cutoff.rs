@@ -31,12 +31,22 @@ pub fn filtered(inputs: &[Input<'_>], cutoff: Option<f64>, arm: &Arm) -> Motions
     if cutoff.is_some() {
         return motions;
     }
-    let tempo = motions.usual_tempo();
+    let mut tempo = motions.usual_tempo();
     let quick = (CUTOFF_PERIODS * tempo).min(HIGHEST_CUTOFF);
     if quick > WORTH_RAISING * motions.cutoff {
         motions = at(quick);
     }
-    let (share, joint) = noise_share(&motions, arm);
+    // Noise may hide that a joint moves.
+    let mut moves: Vec<bool> = motions.tempo.iter().map(|&tempo| tempo > 0.0).collect();
+    if moves.contains(&false) && motions.cutoff > LEAST_CUTOFF {
+        let quiet = at(LEAST_CUTOFF);
+        let hidden: Vec<bool> = moves.iter().zip(&quiet.tempo).map(|(moves, &tempo)| !moves && tempo > 0.0).collect();
+        if hidden.contains(&true) {
+            tempo = quiet.usual_tempo();
+            moves.iter_mut().zip(hidden).for_each(|(moves, hidden)| *moves |= hidden);
+        }
+    }
+    let (share, joint) = noise_share(&motions, arm, &moves);
     if share > MOST_NOISE {
         let quiet = motions.cutoff * (MOST_NOISE / share).powf(1.0 / NOISE_GROWTH);
         let least = LEAST_CUTOFF.max(LEAST_CUTOFF_PERIODS * tempo).min(motions.cutoff);

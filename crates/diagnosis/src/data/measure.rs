@@ -121,8 +121,8 @@ pub fn deviations(motions: &Motions) -> Vec<f64> {
     (0..motions.dof).map(|joint| deviation(chunks().flat_map(move |chunk| &chunk.tau[joint]))).collect()
 }
 
-/// The largest part of a joint's torque that the noise of the positions causes through the mass matrix, and the joint.
-pub fn noise_share(motions: &Motions, arm: &Arm) -> (f64, usize) {
+/// The largest part of the torque of a joint that `moves` that the noise of the positions causes through the mass matrix, and the joint.
+pub fn noise_share(motions: &Motions, arm: &Arm, moves: &[bool]) -> (f64, usize) {
     let mut workspace = Workspace::new(arm);
     let mut mass = DMatrix::zeros(motions.dof, motions.dof);
     let mut largest = DMatrix::<f64>::zeros(motions.dof, motions.dof);
@@ -136,7 +136,7 @@ pub fn noise_share(motions: &Motions, arm: &Arm) -> (f64, usize) {
     }
     let torque = deviations(motions);
     let share = |joint: usize| {
-        if torque[joint] <= 0.0 || motions.tempo[joint] == 0.0 {
+        if torque[joint] <= 0.0 || !moves[joint] {
             return 0.0;
         }
         let of = |source: &SourceRecording| -> f64 {

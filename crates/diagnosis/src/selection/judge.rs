@@ -9,7 +9,7 @@ use crate::regression::fit::Products;
 use crate::search::physics::is_at_its_size;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
-use crate::selection::of_noise::may_be_noise;
+use crate::selection::of_noise::{may_be_noise, may_be_noise_of_base};
 use crate::thresholds::{
     ABOVE_RESIDUAL, HARMLESS, IDLE_EFFECT, LEAST_DRIVE, LEAST_OF_ARM, LEAST_OF_MISMATCH, MOST_OF_A_RECORDING,
     NEARLY_CONSTANT, OF_BEYOND, WORSE,
@@ -281,7 +281,8 @@ fn weakest(study: &Study, members: &[Member]) -> Option<usize> {
             let named = largest(&|m| is_named(m) && !is_baseline(m), at);
             return share < study.thresholds.least_unmodelled_share
                 || member.evidence < study.thresholds.least_unmodelled_evidence
-                || share < study.thresholds.beside_a_larger * named;
+                || share < study.thresholds.beside_a_larger * named
+                || may_be_noise_of_base(study, member.candidate, &member.shares);
         }
         let unmodelled = largest(&|m| !is_named(m), at);
         if is_changed_friction(member) {

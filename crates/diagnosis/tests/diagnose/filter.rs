@@ -5,6 +5,7 @@ use crate::support::{
     TURN, baseline_friction, diagnosed_with, effects_on, inputs, named, recorded, regular, sentences, trio,
 };
 use diagnosis::{Action, Diagnosis, Options, diagnose};
+use recording::RegularRecording;
 
 /// Half the gap (rad).
 const HALFGAP: f64 = 0.013;
@@ -44,19 +45,44 @@ fn a_stated_filter_is_kept() {
     assert!(filters(&found).is_empty());
 }
 
+/// Recordings of the exact model with its baseline friction, and uniform noise of this width (rad) on the positions.
+fn with_noise(width: f64) -> [RegularRecording; 3] {
+    let mut state: u64 = 49;
+    [0, 1, 2].map(|variant| {
+        let mut recording = recorded(&trio(), variant, 20.0, &|motion, tau| baseline_friction(motion, tau));
+        for q in recording.q.iter_mut().flatten() {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            *q += width * ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5);
+        }
+        regular(&recording)
+    })
+}
+
+fn diagnosed_with_noise(width: f64) -> Diagnosis {
+    diagnose(&trio(), &inputs(&with_noise(width)), &Options::default(), &|_| {}).expect("it can be diagnosed")
+}
+
 /// A spring between drive and link filters the noise of the positions out of the link's inertial torque, in held-out recordings, too.
 /// It is not named for that.
 #[test]
 fn the_noise_of_positions_is_not_a_spring() {
-    let mut state: u64 = 49;
-    let recordings = [0, 1, 2].map(|variant| {
-        let mut recording = recorded(&trio(), variant, 20.0, &|motion, tau| baseline_friction(motion, tau));
-        for q in recording.q.iter_mut().flatten() {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            *q += 2e-4 * ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5);
-        }
-        regular(&recording)
-    });
-    let diagnosis = diagnose(&trio(), &inputs(&recordings), &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let diagnosis = diagnosed_with_noise(2e-4);
     assert!(named(&diagnosis).is_empty(), "{:?}", named(&diagnosis));
+}
+
+/// A base that sways under the arm would filter it, too.
+#[test]
+fn the_noise_of_positions_is_not_a_swaying_base() {
+    let report = diagnosed_with_noise(5e-4).report;
+    assert!(report.unexplained.is_empty(), "{:?}", report.unexplained);
+}
+
+/// So much noise that a joint does not seem to move at the usual cut-off lowers it nevertheless.
+#[test]
+fn noise_that_hides_the_motion_lowers_the_cut_off() {
+    for width in [2e-3, 4e-3] {
+        let report = diagnosed_with_noise(width).report;
+        assert!(report.cutoff.is_some_and(|cutoff| cutoff < 6.0), "{width}: {:?}", report.cutoff);
+        assert!(report.unexplained.is_empty(), "{width}: {:?}", report.unexplained);
+    }
 }
