@@ -21,7 +21,7 @@ use crate::report::Report;
 use crate::search::problem::Selection;
 use crate::selection::FinalFit;
 use crate::selection::bootstrap::Resampled;
-use crate::thresholds::{LEAST_LAG, LEAST_LAGGING, LEAST_NOTED_LAG, SURE_OF_LAG, TURNS_LATE};
+use crate::thresholds::{LEAST_LAG, LEAST_LAG_NATS, LEAST_LAGGING, LEAST_NOTED_LAG, SURE_OF_LAG, TURNS_LATE};
 
 pub use own::remark_on_own;
 
@@ -46,7 +46,7 @@ impl TorqueLag {
         let is_clear = |&&k: &&usize| lags[k] * common.value.signum() > SURE_OF_LAG * covariance[(k, k)].sqrt();
         let clear = agreeing.iter().filter(is_clear).count();
         let lag = Self { seconds: UNIT_LAG * common.value, half: UNIT_LAG * NORMAL_95 * common.deviation };
-        let is_seen = common.is_seen_without_each(&lags, &covariance, &agreeing);
+        let is_seen = common.is_seen_without_each(&lags, &covariance, &agreeing, LEAST_LAG_NATS);
         let is_shared = clear >= LEAST_LAGGING && 2 * clear > count && is_seen;
         (is_shared && lag.seconds.abs() >= LEAST_LAG).then_some(lag)
     }

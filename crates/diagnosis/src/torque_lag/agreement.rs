@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::thresholds::{LEAST_LAG_NATS, LEAST_LAGGING, MOST_OF_LAG};
+use crate::thresholds::{LEAST_LAGGING, MOST_BY_CHANCE, MOST_OF_LAG};
 
 /// The value that several estimates have in common, by generalised least squares.
 pub struct Common {
@@ -14,6 +14,8 @@ pub struct Common {
     pub explained: f64,
     /// and the rest.
     misfit: f64,
+    /// The number of estimates.
+    count: usize,
 }
 
 impl Common {
@@ -30,12 +32,14 @@ impl Common {
             deviation: weight.sqrt().recip(),
             explained,
             misfit: (values.dot(&weighted) - explained).max(0.0),
+            count: chosen.len(),
         })
     }
 
-    /// Whether hardly anything contradicts it.
+    /// Whether hardly anything contradicts it, or no more than chance.
     fn is_shared(&self) -> bool {
-        self.misfit <= MOST_OF_LAG * (self.misfit + self.explained)
+        let by_chance = MOST_BY_CHANCE * self.count.saturating_sub(1) as f64;
+        self.misfit <= by_chance.max(MOST_OF_LAG * (self.misfit + self.explained))
     }
 
     /// That of most of the `values`, with these: a joint may have a lag of its own. `None` if most do not agree.
@@ -58,13 +62,18 @@ impl Common {
         }
     }
 
-    /// Whether it is seen without each of the values that agree on it: one joint alone may have any delay.
-    pub fn is_seen_without_each(&self, values: &DVector<f64>, covariance: &DMatrix<f64>, agreeing: &[usize]) -> bool {
+    /// Whether it is seen with the evidence `least` (nats) without each of the values that agree on it: one joint alone may have any delay.
+    pub fn is_seen_without_each(
+        &self,
+        values: &DVector<f64>,
+        covariance: &DMatrix<f64>,
+        agreeing: &[usize],
+        least: f64,
+    ) -> bool {
         agreeing.iter().all(|joint| {
             let others: Vec<usize> = agreeing.iter().copied().filter(|other| other != joint).collect();
-            Self::of(values, covariance, &others).is_some_and(|rest| {
-                rest.is_shared() && rest.value * self.value > 0.0 && 0.5 * rest.explained >= LEAST_LAG_NATS
-            })
+            Self::of(values, covariance, &others)
+                .is_some_and(|rest| rest.is_shared() && rest.value * self.value > 0.0 && 0.5 * rest.explained >= least)
         })
     }
 }

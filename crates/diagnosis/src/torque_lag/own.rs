@@ -12,7 +12,7 @@ use super::agreement::Common;
 use crate::data::input::Input;
 use crate::data::statistics::{mean_square, median};
 use crate::selection::FinalFit;
-use crate::thresholds::{LEAST_LAG_NATS, LEAST_LAGGING, LEAST_MORE_OWN_LAG, LEAST_OWN_LAG, LEAST_WITH_OWN_LAG};
+use crate::thresholds::{LEAST_LAGGING, LEAST_MORE_OWN_LAG, LEAST_OWN_LAG, LEAST_OWN_LAG_NATS, LEAST_WITH_OWN_LAG};
 use crate::words::late;
 
 /// The lag of a recording beyond that of the fit.
@@ -44,7 +44,7 @@ impl Lagging {
             let has_some = removed.get(recording).is_some_and(|removed| *removed != 0.0);
             let least = if has_some { LEAST_MORE_OWN_LAG } else { LEAST_OWN_LAG };
             let nats = 0.5 * ((common.value - usual) / common.deviation).powi(2);
-            if lag.abs() >= least && nats >= LEAST_LAG_NATS { lag } else { 0.0 }
+            if lag.abs() >= least && nats >= LEAST_OWN_LAG_NATS { lag } else { 0.0 }
         };
         let own: Vec<f64> = all.iter().enumerate().map(own).collect();
         own.iter().any(|lag| *lag != 0.0).then_some(own)
@@ -57,7 +57,10 @@ impl Lagging {
         let (lags, covariance) = (DVector::from_vec(lags), DMatrix::from_diagonal(&DVector::from_vec(variances)));
         let (common, agreeing) = Common::of_most(&lags, &covariance)?;
         let are_enough = agreeing.len() >= LEAST_LAGGING && 2 * agreeing.len() > self.joints.len();
-        are_enough.then_some(Residual { is_seen: common.is_seen_without_each(&lags, &covariance, &agreeing), common })
+        are_enough.then_some(Residual {
+            is_seen: common.is_seen_without_each(&lags, &covariance, &agreeing, LEAST_OWN_LAG_NATS),
+            common,
+        })
     }
 
     /// The lag of a joint in a recording and its variance: the residual regressed on the torque's change, beside friction of the
