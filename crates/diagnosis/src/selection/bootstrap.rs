@@ -1,7 +1,7 @@
 //! Intervals by resampling: each draw fits the data with random weights on blocks of time (Rubin 1981, The Bayesian
 //! bootstrap). All blocks have a positive weight, so that rows of a short event, such as a contact, always count.
 
-use effects::background::OFFSET;
+use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, OFFSET, OWN_FRICTION};
 use effects::laws::RIGID;
 use effects::{Size, Term};
 use nalgebra::{DMatrix, DVector};
@@ -148,20 +148,17 @@ pub fn resample(study: &mut Study, selected: &Selection) -> Resampled {
                 b += right * weight;
             }
             let mean = prior.draw(&mut state, p);
-            let solved = solve_both(&a, &b, &mean);
-            let with = |times: f64| in_true_torque(&solved[0] + &solved[1] * times, &scaled);
-            (with(UNEVEN), with(1.0))
+            let right = |times: &DVector<f64>| &b + mean.component_mul(times);
+            let [draw, even] = solve_both(&a, &right(&prior.times), &right(&prior.times_evenly));
+            (in_true_torque(draw, &scaled), in_true_torque(even, &scaled))
         })
         .unzip();
-    Resampled {
-        columns,
-        estimate,
-        draws,
-        even,
-        other: None,
-        sizes: all,
-        inflation: if study.strengths.is_of_joints() { INFLATION_IN_DRIVES } else { INFLATION },
-    }
+    Resampled { columns, estimate, draws, even, other: None, sizes: all, inflation: inflation(study) }
+}
+
+/// The factor on the standard deviation of the draws.
+fn inflation(study: &Study) -> f64 {
+    if study.strengths.is_of_joints() { INFLATION_IN_DRIVES } else { INFLATION }
 }
 
 /// The indices of a column whose torque is measured through a torque scale, and of that scale's column.
@@ -215,6 +212,10 @@ struct PriorDraws {
     pull: DVector<f64>,
     /// The Cholesky factor of K.
     lower: DMatrix<f64>,
+    /// The multiples with which the mean is drawn,
+    times: DVector<f64>,
+    /// and those for a background whose strength is the same in all directions.
+    times_evenly: DVector<f64>,
     /// The number of corrections of sizes.
     sizes: usize,
 }
@@ -231,6 +232,7 @@ impl PriorDraws {
             let own = background.pull();
             pull.rows_mut(0, own.len()).copy_from(&own);
         }
+        let background_columns = background.as_ref().map_or_else(Vec::new, |background| background.columns.clone());
         let own = background.map_or_else(|| DMatrix::zeros(0, 0), |b| b.precision);
         let mut precision = DMatrix::zeros(p, p);
         precision.view_mut((0, 0), own.shape()).copy_from(&own);
@@ -238,7 +240,23 @@ impl PriorDraws {
             precision[(size, size)] = LARGEST_CORRECTION.powi(-2);
         }
         let lower = own.clone().cholesky().map_or(own, nalgebra::Cholesky::unpack);
-        Self { precision, pull, lower, sizes }
+        let term = |k: usize| background_columns.get(k).map(|&column| study.table.terms[column]);
+        let is_stated = study.stated.gain.is_some();
+        // The spread of the draws is multiplied by an inflation that is not that of a stated deviation.
+        let times = |k: usize, uneven: f64, inflation: f64| match term(k) {
+            Some(term) if is_stated && term.is(&GAIN_LAW) => 1.0 / inflation,
+            Some(term) if is_viscous(&term) => 1.0,
+            _ => uneven,
+        };
+        let times = |uneven: f64, inflation: f64| DVector::from_fn(p, |k, _| times(k, uneven, inflation));
+        Self {
+            precision,
+            pull,
+            lower,
+            times: times(UNEVEN, inflation(study)),
+            times_evenly: times(1.0, INFLATION),
+            sizes,
+        }
     }
 
     /// K ξ for the right-hand side of `p` columns, ξ ~ N(0, K⁻¹).
@@ -256,6 +274,11 @@ impl PriorDraws {
         right.rows_mut(p - self.sizes, self.sizes).copy_from(&sizes);
         right
     }
+}
+
+/// Whether a term of the background is a part of the friction that grows with the speed.
+fn is_viscous(term: &Term) -> bool {
+    term.form == 1 && (term.is(&FRICTION_CURVE) || term.is(&OWN_FRICTION))
 }
 
 /// The weighted normal equations of each block.
