@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::{Quantity, Recording, RecordingError, write_whole};
+use crate::{Recording, RecordingError, write_whole};
 
 impl Recording {
     /// Writes the recording to `path`, completely or not at all; numbers read back to the same bits.
@@ -12,30 +12,10 @@ impl Recording {
     /// [`RecordingError::Write`] if the file cannot be written.
     pub fn write_csv(&self, path: &Path) -> Result<(), RecordingError> {
         let mut columns: Vec<(String, &[f64])> = vec![("t".into(), &self.time)];
-        let signals = [
-            (Quantity::Position, Some(&self.q)),
-            (Quantity::Velocity, self.qd.as_ref()),
-            (Quantity::Acceleration, self.qdd.as_ref()),
-            (Quantity::Torque, Some(&self.tau)),
-        ];
-        for (quantity, signal) in signals {
-            for (joint, values) in self.joints.iter().zip(signal.into_iter().flatten()) {
-                columns.push((format!("{}{joint}", quantity.prefix()), values));
-            }
-        }
-        let partial = [
-            (Quantity::SecondaryPosition, &self.q_secondary),
-            (Quantity::CurrentTorque, &self.tau_current),
-            (Quantity::Current, &self.current),
-            (Quantity::Temperature, &self.temperature),
-        ];
-        for (quantity, signal) in partial {
-            for (joint, values) in self.joints.iter().zip(signal) {
-                if let Some(values) = values {
-                    columns.push((format!("{}{joint}", quantity.prefix()), values));
-                }
-            }
-        }
+        columns.extend(self.channels().filter_map(|(meaning, values)| {
+            let (quantity, joint) = meaning?;
+            Some((format!("{}{}", quantity.prefix(), self.joints.get(joint)?), values.as_slice()))
+        }));
         columns.extend(self.others.iter().map(|(name, values)| (name.clone(), values.as_slice())));
         write_whole(path, |file| write_columns(file, &columns))
     }

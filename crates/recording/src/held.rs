@@ -1,6 +1,6 @@
 //! Rows that repeat the previous sample, from a logger that is faster than the drive.
 
-use crate::{PartialSignal, Recording, Warning};
+use crate::{Recording, Warning};
 
 /// The smallest number of samples in which repetitions are recognised.
 const LEAST_RUNS: usize = 20;
@@ -123,28 +123,12 @@ fn runs(recording: &Recording, all: bool) -> Vec<(usize, usize)> {
 
 /// The recording's rows `rows` alone.
 fn picked(recording: &Recording, rows: &[usize]) -> Recording {
-    let pick = |signal: &Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| signal[row]).collect() };
-    let all = |signals: &Vec<Vec<f64>>| -> Vec<Vec<f64>> { signals.iter().map(pick).collect() };
-    let some =
-        |signals: &PartialSignal| -> PartialSignal { signals.iter().map(|signal| signal.as_ref().map(pick)).collect() };
-    Recording {
-        joints: recording.joints.clone(),
-        time: pick(&recording.time),
-        q: all(&recording.q),
-        qd: recording.qd.as_ref().map(all),
-        qdd: recording.qdd.as_ref().map(all),
-        tau: all(&recording.tau),
-        q_secondary: some(&recording.q_secondary),
-        tau_current: some(&recording.tau_current),
-        current: some(&recording.current),
-        temperature: some(&recording.temperature),
-        others: recording.others.iter().map(|(name, values)| (name.clone(), pick(values))).collect(),
-        breaks: recording.breaks.iter().map(|&at| rows.partition_point(|&row| row < at)).collect(),
-        warnings: recording.warnings.clone(),
-        epoch: recording.epoch,
-        left_out: recording.left_out,
-        origin: recording.origin.clone(),
-    }
+    let pick = |values: &mut Vec<f64>| *values = rows.iter().map(|&row| values[row]).collect();
+    let mut picked = recording.clone();
+    pick(&mut picked.time);
+    picked.channels_mut().for_each(|(_, values)| pick(values));
+    picked.breaks.iter_mut().for_each(|at| *at = rows.partition_point(|row| row < at));
+    picked
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod bag_order;
 mod bag_windows;
 mod bytes;
 mod cdr;
+mod channels;
 mod clock;
 mod column_map;
 mod csv_write;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::windows::is_taken;
-use crate::{PartialSignal, RegularRecording, Segment, Signal};
+use crate::{RegularRecording, Segment};
 
 /// The length of a window (s).
 const WINDOW: f64 = 20.0;
@@ -39,17 +39,8 @@ impl RegularRecording {
                 Segment { ticks: from..ticks, start: start_of(window) }
             })
             .collect();
-        let whole = |signal: &mut Signal| signal.iter_mut().for_each(|values| keep(values, &kept));
-        let partial = |signal: &mut PartialSignal| signal.iter_mut().flatten().for_each(|values| keep(values, &kept));
         keep(&mut self.present, &kept);
-        whole(&mut self.q);
-        whole(&mut self.tau);
-        self.qd.iter_mut().for_each(whole);
-        self.qdd.iter_mut().for_each(whole);
-        for signal in [&mut self.q_secondary, &mut self.tau_current, &mut self.current, &mut self.temperature] {
-            partial(signal);
-        }
-        self.others.iter_mut().for_each(|(_, values)| keep(values, &kept));
+        self.channels_mut().for_each(|(_, values)| keep(values, &kept));
         self.segments = segments;
         self.left_out += (before - self.len()) as f64 * self.period;
         self.len() < before

@@ -173,19 +173,19 @@ impl Recording {
             even: clock.regular,
             warnings: &mut warnings,
         };
-        let regular = RegularRecording {
+        let mut regular = RegularRecording {
             joints: self.joints.clone(),
             start: segments.first().map_or(0.0, |segment| segment.start),
             period: clock.period,
-            q: resample.signal(Quantity::Position, &self.q),
-            qd: self.qd.as_ref().map(|qd| resample.signal(Quantity::Velocity, qd)),
-            qdd: self.qdd.as_ref().map(|qdd| resample.signal(Quantity::Acceleration, qdd)),
-            tau: resample.signal(Quantity::Torque, &self.tau),
-            q_secondary: resample.partial(Quantity::SecondaryPosition, &self.q_secondary),
-            tau_current: resample.partial(Quantity::CurrentTorque, &self.tau_current),
-            current: resample.partial(Quantity::Current, &self.current),
-            temperature: resample.partial(Quantity::Temperature, &self.temperature),
-            others: self.others.iter().map(|(name, values)| (name.clone(), resample.channel(None, values))).collect(),
+            q: self.q.clone(),
+            qd: self.qd.clone(),
+            qdd: self.qdd.clone(),
+            tau: self.tau.clone(),
+            q_secondary: self.q_secondary.clone(),
+            tau_current: self.tau_current.clone(),
+            current: self.current.clone(),
+            temperature: self.temperature.clone(),
+            others: self.others.clone(),
             segments,
             present,
             has_clock: clock.regular,
@@ -193,6 +193,9 @@ impl Recording {
             jitter_max: clock.jitter.1,
             left_out: self.left_out,
         };
+        for (meaning, values) in regular.channels_mut() {
+            *values = resample.channel(meaning, values);
+        }
         Ok((regular, warnings))
     }
 
@@ -278,16 +281,6 @@ struct Resampler<'a> {
 }
 
 impl Resampler<'_> {
-    fn signal(&mut self, quantity: Quantity, signal: &Signal) -> Signal {
-        (0..signal.len()).map(|joint| self.channel(Some((quantity, joint)), &signal[joint])).collect()
-    }
-
-    fn partial(&mut self, quantity: Quantity, signal: &PartialSignal) -> PartialSignal {
-        (0..signal.len())
-            .map(|joint| signal[joint].as_ref().map(|values| self.channel(Some((quantity, joint)), values)))
-            .collect()
-    }
-
     fn channel(&mut self, what: Option<(Quantity, usize)>, values: &[f64]) -> Vec<f64> {
         let count = self.stretches.last().map_or(0, |_| self.stretches.iter().map(|s| s.ticks).sum());
         let mut resampled = Vec::with_capacity(count);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::interpolate::lagrange;
-use crate::{RegularRecording, Segment};
+use crate::{Quantity, RegularRecording, Segment};
 
 /// Samples on either side of an interpolated one.
 const SIDE: usize = 2;
@@ -17,17 +17,13 @@ impl RegularRecording {
         let part = late - whole;
         let kept: Vec<Segment> = self.segments.iter().filter_map(|one| self.kept(one, whole as i64)).collect();
         let ranges: Vec<Range<usize>> = kept.iter().map(|segment| segment.ticks.clone()).collect();
-        let moved = |signal: &Vec<f64>| -> Vec<f64> {
+        let moved = |signal: &[f64]| -> Vec<f64> {
             let at = |tick: usize| {
                 let first = (tick as i64 + whole as i64) as usize + 1 - SIDE;
                 let nodes = std::array::from_fn::<_, { 2 * SIDE }, _>(|k| (k as f64, signal[first + k]));
                 lagrange(&nodes, (SIDE - 1) as f64 + part)
             };
             ranges.iter().cloned().flatten().map(at).collect()
-        };
-        let signal = |signal: &Vec<f64>| of(&ranges, signal);
-        let partial = |signals: &Vec<Option<Vec<f64>>>| -> Vec<Option<Vec<f64>>> {
-            signals.iter().map(|one| one.as_ref().map(signal)).collect()
         };
         let mut first = 0;
         let segments = kept.iter().map(|segment| {
@@ -36,24 +32,15 @@ impl RegularRecording {
             let start = segment.start;
             Segment { ticks, start }
         });
-        let segments: Vec<Segment> = segments.collect();
-        Self {
-            joints: self.joints.clone(),
-            start: segments.first().map_or(self.start, |segment| segment.start),
-            period: self.period,
-            present: of(&ranges, &self.present),
-            q: self.q.iter().map(signal).collect(),
-            qd: self.qd.as_ref().map(|qd| qd.iter().map(signal).collect()),
-            qdd: self.qdd.as_ref().map(|qdd| qdd.iter().map(signal).collect()),
-            tau: self.tau.iter().map(moved).collect(),
-            q_secondary: partial(&self.q_secondary),
-            tau_current: partial(&self.tau_current),
-            current: partial(&self.current),
-            temperature: partial(&self.temperature),
-            others: self.others.iter().map(|(name, values)| (name.clone(), signal(values))).collect(),
-            segments,
-            ..*self
+        let mut recording = self.clone();
+        recording.segments = segments.collect();
+        recording.start = recording.segments.first().map_or(self.start, |segment| segment.start);
+        recording.present = of(&ranges, &self.present);
+        for (meaning, values) in recording.channels_mut() {
+            let is_torque = matches!(meaning, Some((Quantity::Torque, _)));
+            *values = if is_torque { moved(values) } else { of(&ranges, values) };
         }
+        recording
     }
 
     /// The ticks of a segment that have a torque `whole` ticks later, with those that interpolation needs; `None` if there are none.
