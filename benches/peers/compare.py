@@ -25,7 +25,6 @@ ARM = [
     ("mass matrix, against Convention::LOCAL", "mass_matrix", "crba_local", None),
     ("torque regressor", "regressor", "regressor", 0.3),
     ("inverse dynamics, batch", "inverse_dynamics_batch", "rnea", 0.15),
-    ("features, batch", "features_batch", "rnea", None),
     ("forward dynamics, batch", "forward_dynamics_batch", "aba", 0.15),
     ("mass matrix, batch", "mass_matrix_batch", "crba", 0.15),
     ("torque regressor, batch", "regressor_batch", "regressor", 0.15),

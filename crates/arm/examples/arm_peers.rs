@@ -111,9 +111,6 @@ fn main() {
     together("inverse_dynamics_batch", &usual, 1, &|[q, qd, qdd], tau| {
         arm.inverse_dynamics_batch(q, qd, qdd, tau);
     });
-    together("features_batch", &usual, FEATURES, &|[q, qd, qdd], features| {
-        arm.newton_euler_features_batch(q, qd, qdd, features);
-    });
     together("forward_dynamics_batch", &usual, 1, &|[q, qd, tau], qdd| {
         arm.forward_dynamics_batch(q, qd, tau, qdd);
     });

@@ -6,7 +6,6 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::inverse_dynamics::FEATURES;
 use crate::model::Arm;
 use crate::real::{Lanes, Real};
 use crate::regressor::PARAMETERS_PER_LINK;
@@ -19,15 +18,6 @@ impl Arm {
     /// If the slices differ in length, or the length is not a multiple of the number of joints.
     pub fn inverse_dynamics_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], tau: &mut [f64]) {
         self.evaluate(InverseDynamics, [q, qd, qdd], [(tau, 1)]);
-    }
-
-    /// [`Arm::newton_euler_features`] for many states: feature `f` of joint `i` of state `k` is at index `(i *
-    /// FEATURES + f) * samples + k`. The last feature is the torque.
-    ///
-    /// # Panics
-    /// If the size of a slice does not match that of `q`.
-    pub fn newton_euler_features_batch(&self, q: &[f64], qd: &[f64], qdd: &[f64], features: &mut [f64]) {
-        self.evaluate(Features, [q, qd, qdd], [(features, FEATURES)]);
     }
 
     /// [`Arm::forward_dynamics`] for many states; all slices are stored joint after joint.
@@ -60,8 +50,9 @@ impl Arm {
         self.evaluate(Regressor, [q, qd, qdd], [(regressor, width)]);
     }
 
-    /// [`Arm::inverse_dynamics_derivatives`] for many states: entry (i, j) of state `k` is at index `(j * dof + i) *
-    /// samples + k`.
+    /// The derivatives ∂τ/∂q and ∂τ/∂q̇ of [`Arm::inverse_dynamics`] for many states. Entry (i, j) of state `k` is the
+    /// derivative of τ_i with respect to joint j (N m or N per rad or m, and per rad/s or m/s), at index `(j * dof + i) *
+    /// samples + k`. ∂τ/∂q̈ is the mass matrix.
     ///
     /// # Panics
     /// If the size of a slice does not match that of `q`.
@@ -124,23 +115,6 @@ impl Recursion for InverseDynamics {
     fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
         let [q, qd, qdd] = thirds(inputs);
         arm.newton_euler(context, scratch, q, qd, qdd, output);
-    }
-}
-
-struct Features;
-
-impl Recursion for Features {
-    #[inline(always)]
-    fn run<T: Real>(&self, arm: &Arm, context: T::Context, scratch: &mut Scratch<T>, inputs: &[T], output: &mut [T]) {
-        let [q, qd, qdd] = thirds(inputs);
-        let n = arm.dof();
-        arm.newton_euler(context, scratch, q, qd, qdd, &mut output[..n]);
-        // The torques are stored where the features of the first joints will be written. From the last joint to the
-        // first, each torque is read before it is overwritten.
-        for i in (0..n).rev() {
-            let features = scratch.features(context, i, output[i]);
-            output[i * FEATURES..(i + 1) * FEATURES].copy_from_slice(&features);
-        }
     }
 }
 

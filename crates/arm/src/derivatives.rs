@@ -1,7 +1,5 @@
 //! The derivatives of inverse dynamics with respect to positions and velocities.
 
-use nalgebra::DMatrix;
-
 use crate::joint::JointKind;
 use crate::model::Arm;
 use crate::real::Real;
@@ -9,39 +7,15 @@ use crate::scratch::{Body, Place, Scratch, Spatial};
 use crate::small::{
     Mat3, Vec3, acceleration_tensor, cross, cross_columns, field_moment, mul, outer, product, rotate_symmetric,
 };
-use crate::workspace::Workspace;
 
 impl Arm {
-    /// The derivatives ∂τ/∂q and ∂τ/∂q̇ of [`Self::inverse_dynamics`], each dof × dof: row i, column j is the
-    /// derivative of τ_i with respect to joint j (N m or N per rad or m, and per rad/s or m/s). ∂τ/∂q̈ is the mass
-    /// matrix.
+    /// The recursion of [`Self::inverse_dynamics_derivatives_batch`]; the matrices are stored column after column.
     ///
     /// If joint j moves by dq, everything that it carries moves rigidly. Relative to that, the velocity of the base
     /// side changes by v_{j−1} × s_j dq, its acceleration accordingly, and with them the wrenches beyond joint j;
     /// towards the base, the wrench turns with the carried links. In the base's axes these changes are the same for
     /// all links, so that sums from the tip suffice. Source: Carpentier and Mansard 2018; the Coriolis terms of the
     /// links as in Singh, Russo and Wensing 2022.
-    ///
-    /// # Panics
-    /// If a slice, the workspace or a matrix is of another size than the arm.
-    pub fn inverse_dynamics_derivatives(
-        &self,
-        workspace: &mut Workspace,
-        q: &[f64],
-        qd: &[f64],
-        qdd: &[f64],
-        by_position: &mut DMatrix<f64>,
-        by_velocity: &mut DMatrix<f64>,
-    ) {
-        workspace.check(self, &[q, qd, qdd]);
-        let n = self.dof();
-        assert_eq!(by_position.shape(), (n, n), "the derivatives are dof × dof");
-        assert_eq!(by_velocity.shape(), (n, n), "the derivatives are dof × dof");
-        let (by_position, by_velocity) = (by_position.as_mut_slice(), by_velocity.as_mut_slice());
-        self.tangents((), &mut workspace.scratch, q, qd, qdd, by_position, by_velocity);
-    }
-
-    /// The recursion of [`Self::inverse_dynamics_derivatives`]; the matrices are stored column after column.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "three inputs and two outputs, as the public function")]
     pub(crate) fn tangents<T: Real>(

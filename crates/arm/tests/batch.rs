@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use arm::{Arm, DMatrix, FEATURES, PARAMETERS_PER_LINK, Workspace};
+use arm::{Arm, DMatrix, PARAMETERS_PER_LINK, Workspace};
 
 fn robots() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -44,13 +44,12 @@ fn compare(arm: &Arm, samples: usize) {
     let [q, qd, qdd] = [0.0, 1.0, 2.0].map(|phase| signal(n, samples, phase));
     // Not zero before the call, because every entry must be written.
     let dirty = |entries: usize| vec![f64::NAN; entries * samples];
-    let (mut tau, mut features, mut accelerations) = (dirty(n), dirty(n * FEATURES), dirty(n));
+    let (mut tau, mut accelerations) = (dirty(n), dirty(n));
     let mut mass = dirty(n * n);
     // Zero before this call, because it does not write the zeros.
     let mut regressor = vec![0.0; n * n * PARAMETERS_PER_LINK * samples];
     let (mut by_position, mut by_velocity) = (dirty(n * n), dirty(n * n));
     arm.inverse_dynamics_batch(&q, &qd, &qdd, &mut tau);
-    arm.newton_euler_features_batch(&q, &qd, &qdd, &mut features);
     arm.forward_dynamics_batch(&q, &qd, &qdd, &mut accelerations);
     arm.mass_matrix_batch(&q, &mut mass);
     arm.torque_regressor_batch(&q, &qd, &qdd, &mut regressor);
@@ -58,21 +57,19 @@ fn compare(arm: &Arm, samples: usize) {
 
     let mut workspace = Workspace::new(arm);
     let mut vector = vec![0.0; n];
-    let mut own_features = vec![[0.0; FEATURES]; n];
     let (mut square, mut other) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
     let mut wide = DMatrix::from_element(n, n * PARAMETERS_PER_LINK, f64::NAN);
     for k in 0..samples {
         let [q, qd, qdd] = [&q, &qd, &qdd].map(|signal| state(signal, samples, k));
-        arm.newton_euler_features(&mut workspace, &q, &qd, &qdd, &mut vector, &mut own_features);
+        arm.inverse_dynamics(&mut workspace, &q, &qd, &qdd, &mut vector);
         assert_same("inverse dynamics", &tau, samples, k, &vector);
-        assert_same("features", &features, samples, k, own_features.as_flattened());
         arm.forward_dynamics(&mut workspace, &q, &qd, &qdd, &mut vector);
         assert_same("forward dynamics", &accelerations, samples, k, &vector);
         arm.mass_matrix(&mut workspace, &q, &mut square);
         assert_same("mass matrix", &mass, samples, k, square.as_slice());
         arm.torque_regressor(&mut workspace, &q, &qd, &qdd, &mut wide);
         assert_same("regressor", &regressor, samples, k, wide.as_slice());
-        arm.inverse_dynamics_derivatives(&mut workspace, &q, &qd, &qdd, &mut square, &mut other);
+        arm.inverse_dynamics_derivatives_batch(&q, &qd, &qdd, square.as_mut_slice(), other.as_mut_slice());
         assert_same("by position", &by_position, samples, k, square.as_slice());
         assert_same("by velocity", &by_velocity, samples, k, other.as_slice());
     }

@@ -92,12 +92,11 @@ fn check_derivatives(robot: &str, urdf: &str) {
     let n = arm.dof();
     let width = 3 * n + 2 * n * n;
     assert_eq!(values.len(), 50 * width);
-    let mut workspace = Workspace::new(&arm);
     let mut ours = [DMatrix::zeros(n, n), DMatrix::zeros(n, n)];
     for (state, mut row) in values.chunks_exact(width).enumerate() {
         let [q, qd, qdd] = [(); 3].map(|()| take(&mut row, n));
-        let [by_position, by_velocity] = &mut ours;
-        arm.inverse_dynamics_derivatives(&mut workspace, q, qd, qdd, by_position, by_velocity);
+        let [by_position, by_velocity] = ours.each_mut().map(DMatrix::as_mut_slice);
+        arm.inverse_dynamics_derivatives_batch(q, qd, qdd, by_position, by_velocity);
         for (what, ours) in ["by position", "by velocity"].iter().zip(&ours) {
             let theirs = DMatrix::from_row_slice(n, n, take(&mut row, n * n));
             let error = (ours - &theirs).amax() / theirs.amax().max(1e-3);

@@ -119,9 +119,8 @@ proptest! {
         let (arm, states) = (arm(&case), case.state());
         let n = arm.dof();
         let mut ours = [DMatrix::zeros(n, n), DMatrix::zeros(n, n)];
-        let [by_position, by_velocity] = &mut ours;
-        let mut workspace = Workspace::new(&arm);
-        arm.inverse_dynamics_derivatives(&mut workspace, &states[0], &states[1], &states[2], by_position, by_velocity);
+        let [by_position, by_velocity] = ours.each_mut().map(DMatrix::as_mut_slice);
+        arm.inverse_dynamics_derivatives_batch(&states[0], &states[1], &states[2], by_position, by_velocity);
         for (which, ours) in ours.iter().enumerate() {
             let mut differences = DMatrix::zeros(n, n);
             let h = 1e-5;

@@ -46,14 +46,6 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// The paper's "GPR only": regressions of the whole torque on (q, q̇, q̈).
-    ///
-    /// # Errors
-    /// [`TorqueError`] if there are no samples or a regression fails.
-    pub fn gp_only(samples: &Samples, options: &TrainingOptions) -> Result<Self, TorqueError> {
-        Self::train(None, Inputs::JointMotion, samples, options, &|| {})
-    }
-
     /// Learns the residual torque of `arm` from `inputs`: the paper's "RBD + GPR" on [`Inputs::JointMotion`], and Independent
     /// Joint Learning on the Newton-Euler inputs (algorithm 2).
     ///
@@ -68,7 +60,7 @@ impl Learned {
         Self::train(Some(arm), inputs, samples, options, &|| {})
     }
 
-    /// Learns as [`Self::on_top_of`] does if there is an `arm`, and the whole torque if there is none. `fitted` is called after
+    /// Learns as [`Self::on_top_of`] does if there is an `arm`, and the whole torque if there is none (the paper's "GPR only"). `fitted` is called after
     /// the regression of each joint, on any thread.
     ///
     /// # Errors

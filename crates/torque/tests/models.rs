@@ -34,12 +34,17 @@ fn scaled_inertias_scale_the_torque() {
     assert!(RigidBody::new(puma560()).mean_squared_error(&tests).iter().all(|error| *error == 0.0));
 }
 
+/// The paper's "GPR only".
+fn gp_only(samples: &Samples) -> Result<Learned, TorqueError> {
+    Learned::train(None, Inputs::JointMotion, samples, &TrainingOptions::default(), &|| {})
+}
+
 /// Every learned model predicts its training samples. Fails if inputs and targets are mismatched.
 #[test]
 fn learned_models_explain_their_training() {
     let train = samples(300, 0);
     let wrong = RigidBody::new(nominal()).mean_squared_error(&train);
-    let gp_only = Learned::gp_only(&train, &TrainingOptions::default()).expect("it trains");
+    let gp_only = gp_only(&train).expect("it trains");
     let models =
         [gp_only, learned(Inputs::JointMotion), learned(Inputs::NewtonEuler12), learned(Inputs::NewtonEuler13)];
     for model in models {
@@ -137,7 +142,7 @@ fn variance_tells_how_far_the_data_are() {
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let none = Learned::gp_only(&Samples::new(6), &TrainingOptions::default());
+    let none = gp_only(&Samples::new(6));
     assert!(matches!(none, Err(TorqueError::NoSamples)));
     let options = LagrangianOptions::default();
     let none = Lagrangian::alone(&puma560(), &Samples::new(6), &options);
@@ -201,7 +206,7 @@ fn the_controller_feeds_back_and_saturates() {
 fn a_learned_torque_fades_where_it_knows_nothing() {
     let train = samples(300, 0);
     let on_top = learned(Inputs::NewtonEuler13);
-    let alone = Learned::gp_only(&train, &TrainingOptions::default()).expect("it trains");
+    let alone = gp_only(&train).expect("it trains");
     for model in [on_top, alone] {
         let rigid = RigidBody::new(nominal());
         let gains = Feedback::Gains { kp: vec![0.0; 6], kd: vec![0.0; 6] };
