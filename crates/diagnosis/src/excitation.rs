@@ -216,7 +216,7 @@ fn shrunk(
         if !is_within {
             continue;
         }
-        let strongest = needed.iter().map(|needed| needed.torque / needed.torque_allowed);
+        let strongest = needed.iter().map(|needed| needed.limits.torque / needed.limits.torque_allowed);
         let strongest = strongest.fold(0.0, f64::max);
         if strongest <= 1.0 {
             return Ok((coefficients, needed));

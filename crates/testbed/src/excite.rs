@@ -10,7 +10,7 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use arm::{Arm, JointKind};
-use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointUse, Quality};
+use diagnosis::{Excitation, ExcitationError, ExcitationOptions, JointLimits, JointUse, Quality};
 use effects::Quantity;
 use recording::Recording;
 use report::terminal::{fitted, table, wrapped};
@@ -209,7 +209,7 @@ fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String
     let mut start = Motion::new(arm.dof());
     found.reference.at(0.0, &mut start);
     for ((joint, needed), start) in arm.joints().iter().zip(&found.needed).zip(&start.q) {
-        joints.add_row(joint_row(joint.kind, needed, *start));
+        joints.add_row(joint_row(joint.kind, &needed.limits, *start));
     }
     let mut motions = table(["motion", "condition number", "scaled", "deviations"].map(str::to_owned));
     motions.add_row(row("proposed", &found.quality));
@@ -237,7 +237,7 @@ fn text(arm: &Arm, found: &Excitation, compared: &[(String, Quality)]) -> String
 fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
     let mut list = Vec::new();
     let hardly = |(joint, needed): &(&arm::Joint, &JointUse)| {
-        joint.kind == JointKind::Revolute && needed.position[1] - needed.position[0] < LEAST_RANGE
+        joint.kind == JointKind::Revolute && needed.limits.position[1] - needed.limits.position[0] < LEAST_RANGE
     };
     let joints = arm.joints().iter().zip(&found.needed).filter(hardly);
     let names: Vec<String> = joints.map(|(joint, _)| joint.name.clone()).collect();
@@ -269,7 +269,7 @@ fn doubts(arm: &Arm, found: &Excitation) -> Vec<String> {
     list
 }
 
-fn joint_row(kind: JointKind, needed: &JointUse, start: f64) -> Vec<String> {
+fn joint_row(kind: JointKind, needed: &JointLimits, start: f64) -> Vec<String> {
     let (place, torque) = (Quantity::Position.unit(kind), Quantity::Torque.unit(kind));
     let part = |value: f64, allowed: f64, unit: &str| {
         let of = if allowed.is_finite() { numbers::percent(value / allowed) } else { "no limit".to_owned() };
@@ -296,7 +296,7 @@ fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
         numbers::short(found.quality.scaled_condition)
     );
     text += "# Position, velocity, acceleration and torque of each joint, and what is allowed (the limits with a margin):\n";
-    for joint in &found.needed {
+    for JointUse { limits: joint, acceleration, acceleration_allowed } in &found.needed {
         let [low, high] = joint.position.map(numbers::short);
         let [least, most] = joint.position_allowed.map(numbers::short);
         let of = |value: f64, allowed: f64| {
@@ -308,7 +308,7 @@ fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
             "#   {}: {low} to {high} of {least} to {most} rad or m; {} rad/s or m/s; {} rad/s2 or m/s2; {} N m or N",
             joint.joint,
             of(joint.velocity, joint.velocity_allowed),
-            of(joint.acceleration, joint.acceleration_allowed),
+            of(*acceleration, *acceleration_allowed),
             of(joint.torque, joint.torque_allowed)
         );
     }

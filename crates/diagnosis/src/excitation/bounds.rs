@@ -5,6 +5,7 @@ use rand::Rng;
 use torque::{Motion, Reference};
 
 use super::ExcitationError;
+use crate::report::JointLimits;
 use crate::thresholds::{LIMIT_MARGIN, WITHIN_LIMITS};
 
 /// The part of the allowed torque that may be needed for holding the arm where the search starts, and the number of places that
@@ -56,37 +57,24 @@ pub struct Allowed {
     pub torque: Vec<f64>,
 }
 
-/// The demands of a motion on a joint, and the allowed values.
+/// The demands of a motion on a joint, and the allowed values; infinite where acceleration or torque are not limited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointUse {
-    /// The joint.
-    pub joint: String,
-    /// Lowest and highest position (rad or m).
-    pub position: [f64; 2],
-    /// The allowed positions (rad or m).
-    pub position_allowed: [f64; 2],
-    /// Largest speed (rad/s or m/s).
-    pub velocity: f64,
-    /// The allowed speed (rad/s or m/s).
-    pub velocity_allowed: f64,
+    /// Position, speed and torque.
+    pub limits: JointLimits,
     /// Largest acceleration (rad/s² or m/s²).
     pub acceleration: f64,
-    /// The allowed acceleration (rad/s² or m/s²); infinite where it is not limited.
+    /// The allowed acceleration (rad/s² or m/s²).
     pub acceleration_allowed: f64,
-    /// Largest torque by the nominal model (N m or N).
-    pub torque: f64,
-    /// The allowed torque (N m or N); infinite where it is not limited.
-    pub torque_allowed: f64,
 }
 
 impl JointUse {
     /// The ratio of position (about `centre`), velocity or acceleration to the allowed value; at most 1 within the limits.
     pub fn beyond_motion(&self, centre: f64) -> f64 {
-        let [low, high] = self.position;
-        let [least, most] = self.position_allowed;
+        let JointLimits { position: [low, high], position_allowed: [least, most], .. } = self.limits;
         let above = (high - centre) / (most - centre);
         let below = (centre - low) / (centre - least);
-        let fast = self.velocity / self.velocity_allowed;
+        let fast = self.limits.velocity / self.limits.velocity_allowed;
         let quick = self.acceleration / self.acceleration_allowed;
         above.max(below).max(fast).max(quick)
     }
@@ -148,30 +136,20 @@ impl Allowed {
         hertz: f64,
     ) -> Vec<JointUse> {
         let dof = arm.dof();
-        let mut needed: Vec<JointUse> = (0..dof)
-            .map(|j| JointUse {
-                joint: self.names[j].clone(),
-                position: [f64::INFINITY, f64::NEG_INFINITY],
-                position_allowed: [self.middle[j] - self.room[j], self.middle[j] + self.room[j]],
-                velocity: 0.0,
-                velocity_allowed: self.velocity[j],
-                acceleration: 0.0,
-                acceleration_allowed: self.acceleration[j],
-                torque: 0.0,
-                torque_allowed: self.torque[j],
-            })
-            .collect();
+        let joints = self.names.iter().enumerate().map(|(j, joint)| JointUse {
+            limits: JointLimits::at_rest(joint, (self.middle[j], self.room[j]), self.velocity[j], self.torque[j]),
+            acceleration: 0.0,
+            acceleration_allowed: self.acceleration[j],
+        });
+        let mut needed: Vec<JointUse> = joints.collect();
         let mut motion = Motion::new(dof);
         let mut torque = vec![0.0; dof];
         for k in 0..=(duration * hertz) as usize {
             reference.at(k as f64 / hertz, &mut motion);
             arm.inverse_dynamics(workspace, &motion.q, &motion.qd, &motion.qdd, &mut torque);
             for (j, needed) in needed.iter_mut().enumerate() {
-                needed.position[0] = needed.position[0].min(motion.q[j]);
-                needed.position[1] = needed.position[1].max(motion.q[j]);
-                needed.velocity = needed.velocity.max(motion.qd[j].abs());
+                needed.limits.include(motion.q[j], motion.qd[j], torque[j]);
                 needed.acceleration = needed.acceleration.max(motion.qdd[j].abs());
-                needed.torque = needed.torque.max(torque[j].abs());
             }
         }
         needed

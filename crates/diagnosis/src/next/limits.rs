@@ -92,17 +92,10 @@ impl Limits {
     /// The demands of `reference` on each joint over `duration` (s), evaluated at `hertz`.
     pub fn needed(&self, reference: &Reference, duration: f64, hertz: f64) -> Vec<JointLimits> {
         let dof = self.names.len();
-        let mut needed: Vec<JointLimits> = (0..dof)
-            .map(|j| JointLimits {
-                joint: self.names[j].clone(),
-                position: [f64::INFINITY, f64::NEG_INFINITY],
-                position_allowed: [self.middle[j] - self.room[j], self.middle[j] + self.room[j]],
-                velocity: 0.0,
-                velocity_allowed: self.speed[j],
-                torque: 0.0,
-                torque_allowed: self.torque[j],
-            })
-            .collect();
+        let joints = self.names.iter().enumerate().map(|(j, joint)| {
+            JointLimits::at_rest(joint, (self.middle[j], self.room[j]), self.speed[j], self.torque[j])
+        });
+        let mut needed: Vec<JointLimits> = joints.collect();
         let mut motion = Motion::new(dof);
         let mut workspace = Workspace::new(dof);
         let mut prediction = Prediction::new(dof);
@@ -113,10 +106,7 @@ impl Limits {
             // The time is the motion's own: a contact is not repeated, and a drive is warm.
             self.model.predict_at(f64::INFINITY, &mut workspace, q, qd, qdd, &mut prediction);
             for (j, needed) in needed.iter_mut().enumerate() {
-                needed.position[0] = needed.position[0].min(q[j]);
-                needed.position[1] = needed.position[1].max(q[j]);
-                needed.velocity = needed.velocity.max(qd[j].abs());
-                needed.torque = needed.torque.max(prediction.torque(j).abs());
+                needed.include(q[j], qd[j], prediction.torque(j));
             }
         }
         needed

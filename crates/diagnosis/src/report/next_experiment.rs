@@ -108,3 +108,25 @@ pub struct JointLimits {
     /// The allowed torque (N m or N).
     pub torque_allowed: f64,
 }
+
+impl JointLimits {
+    /// Before the motion begins; the allowed positions are within `room` of `middle`.
+    pub(crate) fn at_rest(joint: &str, (middle, room): (f64, f64), velocity_allowed: f64, torque_allowed: f64) -> Self {
+        Self {
+            joint: joint.to_owned(),
+            position: [f64::INFINITY, f64::NEG_INFINITY],
+            position_allowed: [middle - room, middle + room],
+            velocity: 0.0,
+            velocity_allowed,
+            torque: 0.0,
+            torque_allowed,
+        }
+    }
+
+    /// Includes a state of the motion and its torque in the demands.
+    pub(crate) fn include(&mut self, q: f64, qd: f64, torque: f64) {
+        self.position = [self.position[0].min(q), self.position[1].max(q)];
+        self.velocity = self.velocity.max(qd.abs());
+        self.torque = self.torque.max(torque.abs());
+    }
+}
