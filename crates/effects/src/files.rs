@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{Error, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -39,8 +39,9 @@ impl Serialize for Effect {
     }
 }
 
-/// A value in a file.
-#[derive(Clone, Debug)]
+/// A value in a file. Only a table is none of these.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "invalid type: map, expected a number, a string or an array")]
 enum Raw {
     Number(f64),
     Text(String),
@@ -149,44 +150,6 @@ impl Raw {
                 Value::Points(self.list()?.iter().map(point).collect::<Result<_, Wrong>>()?)
             }
         })
-    }
-}
-
-impl<'de> Deserialize<'de> for Raw {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Any;
-        impl<'de> Visitor<'de> for Any {
-            type Value = Raw;
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a number, a string or an array")
-            }
-            fn visit_bool<E>(self, value: bool) -> Result<Raw, E> {
-                Ok(Raw::Bool(value))
-            }
-            fn visit_i64<E>(self, value: i64) -> Result<Raw, E> {
-                Ok(Raw::Number(value as f64))
-            }
-            fn visit_u64<E>(self, value: u64) -> Result<Raw, E> {
-                Ok(Raw::Number(value as f64))
-            }
-            fn visit_f64<E>(self, value: f64) -> Result<Raw, E> {
-                Ok(Raw::Number(value))
-            }
-            fn visit_str<E>(self, value: &str) -> Result<Raw, E> {
-                Ok(Raw::Text(value.to_owned()))
-            }
-            fn visit_unit<E>(self) -> Result<Raw, E> {
-                Ok(Raw::Nothing)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Raw, A::Error> {
-                let mut list = Vec::new();
-                while let Some(next) = seq.next_element()? {
-                    list.push(next);
-                }
-                Ok(Raw::List(list))
-            }
-        }
-        deserializer.deserialize_any(Any)
     }
 }
 
