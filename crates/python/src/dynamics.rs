@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use study::robot;
 
 use crate::error::{JointwiseError, in_python, raised};
-use crate::rows::{each_row, each_row_of, flat, rows};
+use crate::rows::{flat, map_rows};
 
 /// The arm of a URDF. Results are flat arrays, row by row.
 #[pyclass(frozen, module = "jointwise._core")]
@@ -57,25 +57,20 @@ impl Dynamics {
         qdd: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let arm = &self.arm;
-        let [q, qd, qdd] = rows(arm, [("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
-        let values = py.detach(|| {
-            each_row_of(arm, q.len(), arm.dof(), |workspace, k, tau| {
-                arm.inverse_dynamics(workspace, q.row(k), qd.row(k), qdd.row(k), tau);
-            })
-        });
-        Ok(flat(py, values))
+        let given = [("q", &q), ("qd", &qd), ("qdd", &qdd)];
+        let scratch = || Workspace::new(arm);
+        map_rows(py, arm, given, arm.dof(), scratch, |workspace, [q, qd, qdd], tau| {
+            arm.inverse_dynamics(workspace, q, qd, qdd, tau);
+        })
     }
 
     /// The torque that holds the arm at rest (N m or N): one row of joints per sample.
     fn gravity<'py>(&self, py: Python<'py>, q: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let arm = &self.arm;
-        let [q] = rows(arm, [("q", &q)])?;
-        let values = py.detach(|| {
-            each_row_of(arm, q.len(), arm.dof(), |workspace, k, tau| {
-                arm.gravity_torque(workspace, q.row(k), tau);
-            })
-        });
-        Ok(flat(py, values))
+        let scratch = || Workspace::new(arm);
+        map_rows(py, arm, [("q", &q)], arm.dof(), scratch, |workspace, [q], tau| {
+            arm.gravity_torque(workspace, q, tau);
+        })
     }
 
     /// The acceleration under a torque (forward dynamics, rad/s² or m/s²): one row of joints per sample.
@@ -95,29 +90,23 @@ impl Dynamics {
                 arm.name()
             )));
         }
-        let [q, qd, tau] = rows(arm, [("q", &q), ("qd", &qd), ("tau", &tau)])?;
-        let values = py.detach(|| {
-            each_row_of(arm, q.len(), arm.dof(), |workspace, k, qdd| {
-                arm.forward_dynamics(workspace, q.row(k), qd.row(k), tau.row(k), qdd);
-            })
-        });
-        Ok(flat(py, values))
+        let given = [("q", &q), ("qd", &qd), ("tau", &tau)];
+        let scratch = || Workspace::new(arm);
+        map_rows(py, arm, given, arm.dof(), scratch, |workspace, [q, qd, tau], qdd| {
+            arm.forward_dynamics(workspace, q, qd, tau, qdd);
+        })
     }
 
     /// The joint-space mass matrix: joints × joints per sample.
     fn mass_matrix<'py>(&self, py: Python<'py>, q: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let arm = &self.arm;
         let dof = arm.dof();
-        let [q] = rows(arm, [("q", &q)])?;
         let scratch = || (Workspace::new(arm), DMatrix::zeros(dof, dof));
-        let values = py.detach(|| {
-            each_row(q.len(), dof * dof, scratch, |(workspace, matrix), k, row| {
-                arm.mass_matrix(workspace, q.row(k), matrix);
-                // The matrix is symmetric, so that column-major order equals row-major order.
-                row.copy_from_slice(matrix.as_slice());
-            })
-        });
-        Ok(flat(py, values))
+        map_rows(py, arm, [("q", &q)], dof * dof, scratch, |(workspace, matrix), [q], row| {
+            arm.mass_matrix(workspace, q, matrix);
+            // The matrix is symmetric, so that column-major order equals row-major order.
+            row.copy_from_slice(matrix.as_slice());
+        })
     }
 
     /// The torque regressor: joints × (10 × links) per sample.
@@ -130,18 +119,15 @@ impl Dynamics {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let arm = &self.arm;
         let (dof, columns) = (arm.dof(), arm.dof() * PARAMETERS_PER_LINK);
-        let [q, qd, qdd] = rows(arm, [("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
+        let given = [("q", &q), ("qd", &qd), ("qdd", &qdd)];
         let scratch = || (Workspace::new(arm), DMatrix::zeros(dof, columns));
-        let values = py.detach(|| {
-            each_row(q.len(), dof * columns, scratch, |(workspace, matrix), k, row| {
-                arm.torque_regressor(workspace, q.row(k), qd.row(k), qdd.row(k), matrix);
-                for (joint, row) in row.chunks_exact_mut(columns).enumerate() {
-                    for (column, value) in row.iter_mut().enumerate() {
-                        *value = matrix[(joint, column)];
-                    }
+        map_rows(py, arm, given, dof * columns, scratch, |(workspace, matrix), [q, qd, qdd], row| {
+            arm.torque_regressor(workspace, q, qd, qdd, matrix);
+            for (joint, row) in row.chunks_exact_mut(columns).enumerate() {
+                for (column, value) in row.iter_mut().enumerate() {
+                    *value = matrix[(joint, column)];
                 }
-            })
-        });
-        Ok(flat(py, values))
+            }
+        })
     }
 }

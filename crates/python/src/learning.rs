@@ -8,7 +8,7 @@ use torque::{
 
 use crate::dynamics::Dynamics;
 use crate::error::JointwiseError;
-use crate::rows::{each_row, flat, rows};
+use crate::rows::{map_rows, rows};
 
 /// A trained model. Results are flat arrays, row by row.
 #[pyclass(frozen, module = "jointwise._core")]
@@ -88,18 +88,15 @@ impl Learned {
         qd: PyReadonlyArray2<'py, f64>,
         qdd: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let [q, qd, qdd] = rows(&self.arm, [("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
         let dof = self.arm.dof();
+        let given = [("q", &q), ("qd", &qd), ("qdd", &qdd)];
         let scratch = || (Workspace::new(dof), Prediction::new(dof));
-        let values = py.detach(|| {
-            each_row(q.len(), dof, scratch, |(workspace, prediction), k, tau| {
-                self.model.predict(workspace, q.row(k), qd.row(k), qdd.row(k), prediction);
-                for (joint, tau) in tau.iter_mut().enumerate() {
-                    *tau = prediction.torque(joint);
-                }
-            })
-        });
-        Ok(flat(py, values))
+        map_rows(py, &self.arm, given, dof, scratch, |(workspace, prediction), [q, qd, qdd], tau| {
+            self.model.predict(workspace, q, qd, qdd, prediction);
+            for (joint, tau) in tau.iter_mut().enumerate() {
+                *tau = prediction.torque(joint);
+            }
+        })
     }
 
     /// The variances of the learned part, without the noise (squared torque): one row of joints per sample.
@@ -110,21 +107,14 @@ impl Learned {
         qd: PyReadonlyArray2<'py, f64>,
         qdd: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let [q, qd, qdd] = rows(&self.arm, [("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
         let dof = self.arm.dof();
-        let values = py.detach(|| {
-            each_row(
-                q.len(),
-                dof,
-                || Workspace::new(dof),
-                |workspace, k, row| {
-                    if let Some(variance) = self.model.variance(workspace, q.row(k), qd.row(k), qdd.row(k)) {
-                        row.copy_from_slice(variance);
-                    }
-                },
-            )
-        });
-        Ok(flat(py, values))
+        let given = [("q", &q), ("qd", &qd), ("qdd", &qdd)];
+        let scratch = || Workspace::new(dof);
+        map_rows(py, &self.arm, given, dof, scratch, |workspace, [q, qd, qdd], row| {
+            if let Some(variance) = self.model.variance(workspace, q, qd, qdd) {
+                row.copy_from_slice(variance);
+            }
+        })
     }
 
     /// Amplitude, length scales, noise and log marginal likelihood of each joint's regression.

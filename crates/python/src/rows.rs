@@ -1,6 +1,6 @@
 //! Arrays with one row per sample, and computations row by row.
 
-use arm::{Arm, Workspace};
+use arm::Arm;
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -65,31 +65,27 @@ pub fn rows<const N: usize>(arm: &Arm, given: [(&str, &PyReadonlyArray2<'_, f64>
     list.try_into().map_err(|_| JointwiseError::new_err("arrays were lost on the way"))
 }
 
-/// An array of `count` rows with `width` numbers each; `of` computes a row. A row's numbers do not depend on the other
-/// rows.
-pub fn each_row<W: Send>(
-    count: usize,
+/// A flat array of one row with `width` numbers per sample; `of` computes it from the sample's rows of `given`. A row's numbers do not
+/// depend on the other rows.
+pub fn map_rows<'py, W: Send, const N: usize>(
+    py: Python<'py>,
+    arm: &Arm,
+    given: [(&str, &PyReadonlyArray2<'_, f64>); N],
     width: usize,
     workspace: impl Fn() -> W + Sync + Send,
-    of: impl Fn(&mut W, usize, &mut [f64]) + Sync + Send,
-) -> Vec<f64> {
-    let mut values = vec![0.0; count * width];
-    values.par_chunks_mut(BLOCK * width.max(1)).enumerate().for_each_init(workspace, |workspace, (block, values)| {
-        for (k, row) in values.chunks_exact_mut(width.max(1)).enumerate() {
-            of(workspace, block * BLOCK + k, row);
-        }
+    of: impl Fn(&mut W, [&[f64]; N], &mut [f64]) + Sync + Send,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let signals = rows(arm, given)?;
+    let mut values = vec![0.0; signals[0].len() * width];
+    py.detach(|| {
+        let blocks = values.par_chunks_mut(BLOCK * width.max(1)).enumerate();
+        blocks.for_each_init(workspace, |workspace, (block, values)| {
+            for (k, row) in values.chunks_exact_mut(width.max(1)).enumerate() {
+                of(workspace, signals.each_ref().map(|signal| signal.row(block * BLOCK + k)), row);
+            }
+        });
     });
-    values
-}
-
-/// Computes the rows as [`each_row`] does, with the arm's workspace.
-pub fn each_row_of(
-    arm: &Arm,
-    count: usize,
-    width: usize,
-    of: impl Fn(&mut Workspace, usize, &mut [f64]) + Sync + Send,
-) -> Vec<f64> {
-    each_row(count, width, || Workspace::new(arm), of)
+    Ok(flat(py, values))
 }
 
 /// `values` as a flat NumPy array, which the Python side gives its shape.
