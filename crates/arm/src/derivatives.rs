@@ -3,7 +3,7 @@
 use crate::joint::JointKind;
 use crate::model::Arm;
 use crate::real::Real;
-use crate::scratch::{Body, Place, Scratch, Spatial};
+use crate::scratch::{Body, LinkPose, Scratch, Spatial};
 use crate::small::{
     Mat3, Vec3, acceleration_tensor, cross, cross_columns, field_moment, mul, outer, product, rotate_symmetric,
 };
@@ -65,7 +65,7 @@ impl Arm {
         let mut o = zero;
         let Scratch { places, tangents, .. } = scratch;
         for (i, ((joint, place), tangent)) in self.joints.iter().zip(places.iter()).zip(tangents).enumerate() {
-            let Place { rotation, translation } = place;
+            let LinkPose { rotation, translation } = place;
             (r, o) = (product(&r, rotation), mul(&r, translation) + o);
             let axis = mul(&r, &Vec3::constant(context, &joint.axis));
             let s = match joint.kind {

@@ -3,7 +3,7 @@
 use crate::joint::JointKind;
 use crate::model::Arm;
 use crate::real::Real;
-use crate::scratch::{Place, Scratch};
+use crate::scratch::{LinkPose, Scratch};
 use crate::small::{
     Mat3, Vec3, cross, cross_columns, cross_matrix, less_outer, mul, product, product_tr, rotate_symmetric, symmetric,
     tr_mul,
@@ -134,7 +134,7 @@ impl Arm {
 
             // To the parent's frame: rotate the blocks, then shift the origin by p. With C' = C + [p]× M, the shifted
             // rotational block is I + [p]× C'ᵀ + ([p]× Cᵀ)ᵀ.
-            let Place { rotation: r, translation: p } = &places[i];
+            let LinkPose { rotation: r, translation: p } = &places[i];
             let rotational = rotate_symmetric(r, &rotational);
             let coupling = product_tr(&product(r, &coupling), r);
             let translational = rotate_symmetric(r, &translational);

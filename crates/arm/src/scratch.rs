@@ -2,12 +2,12 @@
 
 mod articulated;
 mod link_motion;
-mod place;
+mod link_pose;
 mod tangent;
 
 pub(crate) use articulated::Articulated;
 pub(crate) use link_motion::LinkMotion;
-pub(crate) use place::Place;
+pub(crate) use link_pose::LinkPose;
 pub(crate) use tangent::{Body, Spatial, Tangent};
 
 use crate::real::Real;
@@ -16,7 +16,7 @@ use crate::small::Vec3;
 /// Intermediate results of the recursions, one entry per joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch<T> {
-    pub places: Vec<Place<T>>,
+    pub places: Vec<LinkPose<T>>,
     pub motions: Vec<LinkMotion<T>>,
     pub articulated: Vec<Articulated<T>>,
     /// The unit motions of the joints in one link's frame: angular and linear part.
@@ -28,7 +28,7 @@ impl<T: Real> Scratch<T> {
     pub fn new(context: T::Context, dof: usize) -> Self {
         let zero = Vec3::zeros(context);
         Self {
-            places: vec![Place::zeros(context); dof],
+            places: vec![LinkPose::zeros(context); dof],
             motions: vec![LinkMotion::zeros(context); dof],
             articulated: vec![Articulated::zeros(context); dof],
             twists: vec![(zero, zero); dof],

@@ -8,12 +8,12 @@ use crate::small::{Mat3, Vec3};
 
 /// A pose `parent_from_link`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<T> {
+pub(crate) struct LinkPose<T> {
     pub rotation: Mat3<T>,
     pub translation: Vec3<T>,
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> LinkPose<T> {
     /// The identity.
     pub fn zeros(context: T::Context) -> Self {
         Self { rotation: Mat3::zeros(context), translation: Vec3::zeros(context) }
@@ -44,7 +44,7 @@ impl Arm {
     #[inline(always)]
     pub(crate) fn place<T: Real>(&self, context: T::Context, scratch: &mut Scratch<T>, q: &[T], first: usize) {
         for ((joint, place), &q) in self.joints.iter().zip(&mut scratch.places).zip(q).skip(first) {
-            *place = Place::of(context, joint, q);
+            *place = LinkPose::of(context, joint, q);
         }
     }
 }
