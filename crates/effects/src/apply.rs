@@ -3,7 +3,7 @@
 use arm::Arm;
 
 use crate::error::EffectError;
-use crate::machine::{Machine, Place};
+use crate::machine::{JointIndices, Machine};
 use crate::spec::{Effect, Scope};
 
 /// Refuses parameters that are physically impossible.
@@ -47,7 +47,7 @@ impl Machine {
         for effect in effects {
             check(effect)?;
             let spec = effect.spec();
-            let place = Place {
+            let place = JointIndices {
                 joint: match spec.scope {
                     Scope::Joint => joint_of(arm, effect, effect.joint())?,
                     Scope::Arm => 0,

@@ -46,7 +46,7 @@ pub use fitted::{Fitted, UNIT};
 pub use form::{Form, Grounds, SetsIn, Turn};
 pub use kinds::{Kind, NAMES, experiment_against, spec};
 pub use laws::Times;
-pub use machine::{Circumstance, Contact, Dry, Machine, Place, Scaled, Smooth, Sprung, State, sign};
+pub use machine::{Circumstance, Contact, Dry, JointIndices, Machine, Scaled, Smooth, Sprung, State, sign};
 pub use quantity::Quantity;
 pub use regressor::Regressor;
 pub use signals::{Base, Rigid, Scales, Signals};

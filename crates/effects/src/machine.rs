@@ -11,9 +11,9 @@ pub fn sign(velocity: f64) -> f64 {
     if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }
 
-/// The place of an effect: indices of its joints, 0 where it has none.
+/// The indices of the joints of an effect, 0 where it has none.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct JointIndices {
     /// The joint it is on.
     pub joint: usize,
     /// The other joint whose motion it depends on.

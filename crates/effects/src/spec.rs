@@ -8,7 +8,7 @@ use arm::JointKind;
 use crate::estimate::Estimate;
 use crate::fitted::Fitted;
 use crate::form::{Form, Grounds, SetsIn};
-use crate::machine::{Machine, Place};
+use crate::machine::{JointIndices, Machine};
 use crate::regressor::Regressor;
 use crate::term::Term;
 
@@ -249,7 +249,7 @@ pub struct Spec {
     /// Whether two of them on one joint are the same effect, given twice.
     pub is_twin: fn(&Effect, &Effect) -> bool,
     /// Adds the effect to a machine.
-    pub apply: fn(&Effect, Place, &mut Machine),
+    pub apply: fn(&Effect, JointIndices, &mut Machine),
     /// The power of the noise in the column of one of its terms, relative to that in the torque of a link with an inertia (kg m² or
     /// kg), if the noise of the recorded positions is white and passes a filter of half power at a frequency (Hz).
     pub noise_gain: fn(&Term, f64, f64) -> f64,
