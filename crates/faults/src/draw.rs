@@ -4,7 +4,7 @@ use rand::Rng;
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::fault::{Fault, Leaves, Place, coulomb_friction, viscous_friction};
+use crate::fault::{EligibleJoints, Fault, Leaves, coulomb_friction, viscous_friction};
 use crate::site::Scales;
 use crate::truth::Injected;
 
@@ -28,18 +28,18 @@ impl Scales<'_> {
         let n = self.robot.arm().dof();
         let free = |j: &usize| !used.contains(j);
         let mut joints: Vec<usize> = (0..n).filter(free).collect();
-        let fits = |j: usize| match fault.place {
-            Place::AnyJoint | Place::WholeArm => true,
-            Place::OuterJoints => j > 0,
-            Place::InnerJoints => (1..n.saturating_sub(1)).contains(&j),
-            Place::LoadedJoints => self.loads[j] >= LOADED * self.spreads[j],
+        let fits = |j: usize| match fault.joints {
+            EligibleJoints::AnyJoint | EligibleJoints::WholeArm => true,
+            EligibleJoints::OuterJoints => j > 0,
+            EligibleJoints::InnerJoints => (1..n.saturating_sub(1)).contains(&j),
+            EligibleJoints::LoadedJoints => self.loads[j] >= LOADED * self.spreads[j],
         };
         if joints.iter().any(|&j| fits(j)) {
             joints.retain(|&j| fits(j));
         }
         let joint = joints.choose(random).copied().unwrap_or_else(|| random.random_range(0..n));
         let name = self.robot.arm().joints()[joint].name.as_str();
-        let bare = Injected::new(fault.name, (fault.place != Place::WholeArm).then_some(name));
+        let bare = Injected::new(fault.name, (fault.joints != EligibleJoints::WholeArm).then_some(name));
         let mut drawn = (fault.draw)(bare, &self.site(joint), random);
         let begins_late = random.random_bool(ONSET);
         if begins_late && fault.may_have_onset && drawn.leaves() != Leaves::Tool {

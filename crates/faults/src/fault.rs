@@ -92,7 +92,7 @@ pub(crate) struct Fault {
     /// Whether campaigns draw it. Adding a fault that is not drawn does not change the cases of any seed.
     pub is_drawn: bool,
     /// On which joints it is drawn, or on the whole arm.
-    pub place: Place,
+    pub joints: EligibleJoints,
     /// Whether it is outside the catalogue.
     pub is_outside: bool,
     /// Its forms in addition to the first, which is the textbook form (or the simplest).
@@ -126,7 +126,7 @@ pub(crate) struct Fault {
 
 /// The joints on which a fault is drawn.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Place {
+pub(crate) enum EligibleJoints {
     AnyJoint,
     /// All but the first.
     OuterJoints,
@@ -172,7 +172,7 @@ impl Fault {
     const ON_A_JOINT: Self = Self {
         name: "",
         is_drawn: true,
-        place: Place::AnyJoint,
+        joints: EligibleJoints::AnyJoint,
         is_outside: false,
         forms: &[],
         form_parameters: &[],
@@ -190,7 +190,7 @@ impl Fault {
         example: |bare| bare,
     };
 
-    const ON_THE_ARM: Self = Self { place: Place::WholeArm, ..Self::ON_A_JOINT };
+    const ON_THE_ARM: Self = Self { joints: EligibleJoints::WholeArm, ..Self::ON_A_JOINT };
 
     const OUTSIDE_THE_CATALOGUE: Self =
         Self { is_outside: true, may_repeat: true, size: Size::Times(&["amplitude"]), ..Self::ON_A_JOINT };
@@ -256,7 +256,7 @@ mod prelude {
     pub(super) use rand_distr::{Distribution, StandardNormal};
     pub(super) use serde_json::{Value, json};
 
-    pub(super) use super::{Fault, Leaves, Place, Reader, SimilarFaults, Size};
+    pub(super) use super::{EligibleJoints, Fault, Leaves, Reader, SimilarFaults, Size};
     pub(super) use crate::error::FaultError;
     pub(super) use crate::part::{
         At, Body, Connection, Contact, DriveLaw, DryAt, DryLaw, DrySum, LinkLaw, Piece, Property, TimeCourse,

@@ -4,7 +4,7 @@ use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "encoder_offset",
-    place: Place::InnerJoints,
+    joints: EligibleJoints::InnerJoints,
     draw: |bare, at, random| {
         let size = random.random_range(if at.hard { 0.008..0.05 } else { 0.015..0.06 });
         bare.with("offset", size * sign(random))

@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     name: "link_inertial_error",
     forms: &["moved"],
     form_parameters: &["shift", "stretch"],
-    place: Place::OuterJoints,
+    joints: EligibleJoints::OuterJoints,
     draw: |bare, at, random| {
         let part = random.random_range(if at.hard { 0.08..0.4 } else { 0.12..0.4 });
         let bare = bare.with("relative", part * sign(random));

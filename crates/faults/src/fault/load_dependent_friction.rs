@@ -7,7 +7,7 @@ pub(super) const FAULT: Fault = Fault {
     name: "load_dependent_friction",
     forms: &["drive load"],
     // The first joint may carry no load, and the last link may have almost no mass.
-    place: Place::InnerJoints,
+    joints: EligibleJoints::InnerJoints,
     leaves: Leaves::DryFriction,
     draw: |bare, at, random| {
         let (coulomb, form) = at.dry_friction(random);

@@ -3,7 +3,7 @@
 use arm::Arm;
 use serde_json::Value;
 
-use super::{FAULTS, Fault, Place};
+use super::{EligibleJoints, FAULTS, Fault};
 use crate::error::FaultError;
 use crate::part::{DriveLaw, DryLaw, LinkLaw, Part, Piece, Presence, Property};
 use crate::truth::Injected;
@@ -43,7 +43,7 @@ impl Reader<'_> {
         let name = &self.injected.effect;
         if let Some(fault) = Fault::named(name) {
             self.form()?;
-            if fault.place != Place::WholeArm {
+            if fault.joints != EligibleJoints::WholeArm {
                 self.joint()?;
             }
             return Ok(fault);

@@ -5,7 +5,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "torque_saturation",
     forms: &["soft"],
-    place: Place::InnerJoints,
+    joints: EligibleJoints::InnerJoints,
     similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {
         let reached = random.random_range(if at.hard { 0.9..0.98 } else { 0.8..0.95 });

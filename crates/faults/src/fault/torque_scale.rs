@@ -4,7 +4,7 @@ use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "torque_scale",
-    place: Place::LoadedJoints,
+    joints: EligibleJoints::LoadedJoints,
     may_have_onset: true,
     similar_faults: Some(SimilarFaults::Scales),
     draw: |bare, at, random| {

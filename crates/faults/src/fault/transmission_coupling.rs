@@ -4,7 +4,7 @@ use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "transmission_coupling",
-    place: Place::OuterJoints,
+    joints: EligibleJoints::OuterJoints,
     can_be_on: has_another_joint,
     draw: |bare, at, random| {
         // The law is symmetric in the two joints; it is listed for the outer one, as in the catalogue.

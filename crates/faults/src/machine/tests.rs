@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::*;
 use crate::expressed_share::{low_passed, share};
-use crate::fault::{FAULTS, Fault, Place};
+use crate::fault::{EligibleJoints, FAULTS, Fault};
 use crate::motion::{LEAD_TICKS, excitation};
 use crate::test_robots::{puma, seven_axis};
 
@@ -39,7 +39,7 @@ fn a_machine_without_faults_needs_the_rigid_torque() {
 /// A fault of a clearly detectable size, on axis 4 of the arm with seven axes or on the whole arm.
 fn detectable(name: &str) -> Injected {
     let fault = Fault::named(name).expect("there is such a fault");
-    let joint = (fault.place != Place::WholeArm).then_some("axis4");
+    let joint = (fault.joints != EligibleJoints::WholeArm).then_some("axis4");
     (fault.example)(Injected::new(name, joint))
 }
 
