@@ -4,7 +4,7 @@ use arm::DMatrix;
 
 /// Where a joint's friction torque lies between its limits.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
+enum Bound {
     /// Within its limits: the joint remains at rest.
     Within,
     /// At its positive or negative limit: the joint breaks away.
@@ -19,18 +19,18 @@ enum Place {
 /// principal pivoting (Murty 1974), with two bounds instead of one.
 pub(crate) fn holding_torques(response: &DMatrix<f64>, free: &[f64], levels: &[f64]) -> Vec<f64> {
     let n = free.len();
-    let mut places = vec![Place::Within; n];
+    let mut bounds = vec![Bound::Within; n];
     let mut torques = vec![0.0; n];
     // Each of the n joints has three states, so that there are at most 3ⁿ combinations.
     for _ in 0..3_usize.saturating_pow(n as u32) {
-        solve_within(response, free, levels, &places, &mut torques);
-        let violated = (0..n).find_map(|i| match places[i] {
-            Place::Within if torques[i].abs() > levels[i] => Some((i, Place::At(torques[i].signum()))),
-            Place::At(sign) if sign * acceleration(response, free, &torques, i) > 0.0 => Some((i, Place::Within)),
+        solve_within(response, free, levels, &bounds, &mut torques);
+        let violated = (0..n).find_map(|i| match bounds[i] {
+            Bound::Within if torques[i].abs() > levels[i] => Some((i, Bound::At(torques[i].signum()))),
+            Bound::At(sign) if sign * acceleration(response, free, &torques, i) > 0.0 => Some((i, Bound::Within)),
             _ => None,
         });
-        let Some((i, place)) = violated else { break };
-        places[i] = place;
+        let Some((i, bound)) = violated else { break };
+        bounds[i] = bound;
     }
     for i in 0..n {
         torques[i] = torques[i].clamp(-levels[i], levels[i]);
@@ -41,18 +41,18 @@ pub(crate) fn holding_torques(response: &DMatrix<f64>, free: &[f64], levels: &[f
 /// The torques that hold all joints at rest, without regard to their levels (N m or N).
 pub(crate) fn locking_torques(response: &DMatrix<f64>, free: &[f64]) -> Vec<f64> {
     let mut torques = vec![0.0; free.len()];
-    solve_within(response, free, &[], &vec![Place::Within; free.len()], &mut torques);
+    solve_within(response, free, &[], &vec![Bound::Within; free.len()], &mut torques);
     torques
 }
 
-fn solve_within(response: &DMatrix<f64>, free: &[f64], levels: &[f64], places: &[Place], torques: &mut [f64]) {
-    for (i, place) in places.iter().enumerate() {
-        torques[i] = match place {
-            Place::Within => 0.0,
-            Place::At(sign) => sign * levels[i],
+fn solve_within(response: &DMatrix<f64>, free: &[f64], levels: &[f64], bounds: &[Bound], torques: &mut [f64]) {
+    for (i, bound) in bounds.iter().enumerate() {
+        torques[i] = match bound {
+            Bound::Within => 0.0,
+            Bound::At(sign) => sign * levels[i],
         };
     }
-    let within: Vec<usize> = (0..places.len()).filter(|&i| places[i] == Place::Within).collect();
+    let within: Vec<usize> = (0..bounds.len()).filter(|&i| bounds[i] == Bound::Within).collect();
     if within.is_empty() {
         return;
     }
