@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::Warning;
-use crate::place::Place;
+use crate::location::Location;
 
 /// A message that is earlier than one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,13 +58,13 @@ impl Order {
     pub fn warnings(&self) -> Vec<Warning> {
         let late = |(topic, late): (&String, &Counted)| Warning::OutOfOrder {
             topic: topic.clone(),
-            line: Place::Message(late.first),
+            line: Location::Message(late.first),
             messages: late.messages,
             largest: late.largest as f64 * 1e-9,
         };
         let wrong = |(topic, (first, messages)): (&String, &(u64, u64))| Warning::WrongStamps {
             topic: topic.clone(),
-            line: Place::Message(*first),
+            line: Location::Message(*first),
             messages: *messages,
         };
         let late = self.late.iter().map(late);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::RecordingError;
 use crate::header::{Channel, Plan};
-use crate::place::Place;
+use crate::location::Location;
 use crate::table::{Cell, Row};
 
 /// What a value is, and how to mend it.
@@ -38,7 +38,7 @@ pub fn is_header(plan: &Plan, row: &Row<'_>) -> bool {
 }
 
 /// The error of a required value that is missing where others of its column are not.
-pub fn missing(path: &Path, channel: &Channel, place: Place, found: String) -> RecordingError {
+pub fn missing(path: &Path, channel: &Channel, place: Location, found: String) -> RecordingError {
     RecordingError::Value {
         path: path.to_owned(),
         place,

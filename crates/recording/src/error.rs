@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::Place;
+use crate::Location;
 
 /// Why a recording could not be read, understood or written.
 #[derive(Debug, thiserror::Error)]
@@ -49,7 +49,7 @@ pub enum RecordingError {
         /// The file.
         path: PathBuf,
         /// The line or row.
-        place: Place,
+        place: Location,
         /// What was found, and the remedy.
         reason: String,
     },
@@ -59,7 +59,7 @@ pub enum RecordingError {
         /// The file.
         path: PathBuf,
         /// The line or row.
-        place: Place,
+        place: Location,
         /// The column's header.
         column: String,
         /// The content of the cell.

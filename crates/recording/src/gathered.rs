@@ -1,8 +1,8 @@
 //! Columns that were read, combined into a recording.
 
 use crate::header::Plan;
+use crate::location::Location;
 use crate::origin::Origin;
-use crate::place::Place;
 use crate::{PartialSignal, Quantity, Recording, Signal, Warning, wraps};
 
 /// The state of a channel while it is read.
@@ -15,7 +15,7 @@ pub enum State {
     /// No row so far has a value, although every row must have one.
     Missing {
         /// The first row.
-        place: Place,
+        place: Location,
         /// The content of its cell.
         found: String,
     },

@@ -9,7 +9,7 @@ use crate::bag_order::{Order, not_set_back, set_back};
 use crate::bag_windows::BagWindows;
 use crate::cdr::{FIELDS, decode};
 use crate::input::Input;
-use crate::place::Place;
+use crate::location::Location;
 use crate::series::{Series, at};
 use crate::table::{Column, Table};
 use crate::warning::RUN_PAUSE;
@@ -166,7 +166,7 @@ impl JointStates {
             let shift = start.saturating_sub(first.time);
             self.runs.push(Run { shift, start });
             self.restarts.push(Warning::ClockRestart {
-                line: Place::Message(first.number),
+                line: Location::Message(first.number),
                 before: before as f64 / 1e9,
                 after: first.time as f64 / 1e9,
                 placed: start as f64 / 1e9,

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::doubt::{Doubt, FAR, is_header, missing, short, unusable};
 use crate::gathered::{Gathered, State};
 use crate::header::Plan;
-use crate::place::Place;
+use crate::location::Location;
 use crate::stamp::Stamps;
 use crate::table::{Cell, Row};
 use crate::thinned::Thinned;
@@ -57,8 +57,8 @@ pub struct Rows<'a> {
     /// of each.
     duplicates: usize,
     differing: usize,
-    duplicate_place: Place,
-    differing_place: Place,
+    duplicate_place: Location,
+    differing_place: Location,
 }
 
 impl<'a> Rows<'a> {
@@ -90,8 +90,8 @@ impl<'a> Rows<'a> {
             shift: 0.0,
             duplicates: 0,
             differing: 0,
-            duplicate_place: Place::Line(1),
-            differing_place: Place::Line(1),
+            duplicate_place: Location::Line(1),
+            differing_place: Location::Line(1),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use csv::ByteRecord;
 
-use crate::place::Place;
+use crate::location::Location;
 use crate::{RecordingError, Warning};
 
 /// One value of a table.
@@ -101,7 +101,7 @@ impl Column {
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
     /// The place in the file.
-    pub place: Place,
+    pub place: Location,
     cells: Cells<'a>,
 }
 
@@ -114,7 +114,7 @@ enum Cells<'a> {
 impl<'a> Row<'a> {
     /// A row of text, which has as many cells as there are columns.
     pub fn of_text(record: &'a ByteRecord) -> Self {
-        Self { place: Place::Line(record.position().map_or(1, csv::Position::line)), cells: Cells::Record(record) }
+        Self { place: Location::Line(record.position().map_or(1, csv::Position::line)), cells: Cells::Record(record) }
     }
 
     /// The value in a column.
@@ -184,6 +184,6 @@ impl RowSource for Held {
             return Ok(None);
         }
         self.next += 1;
-        Ok(Some(Row { place: Place::Row(self.next as u64), cells: Cells::Columns(&self.columns, self.next - 1) }))
+        Ok(Some(Row { place: Location::Row(self.next as u64), cells: Cells::Columns(&self.columns, self.next - 1) }))
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Place, Quantity};
+use crate::{Location, Quantity};
 
 /// The pause that is assumed between two runs if their clocks do not determine it (s).
 pub(crate) const RUN_PAUSE: f64 = 1.0;
@@ -16,21 +16,21 @@ pub enum Warning {
     /// The file ends in the middle of a row, which was omitted.
     CutFile {
         /// The line or row.
-        line: Place,
+        line: Location,
     },
     /// Rows that equal the previous one were omitted.
     Duplicates {
         /// Their number.
         rows: usize,
         /// The line or row of the first.
-        line: Place,
+        line: Location,
     },
     /// Rows have the time stamp of the previous one and other values; they were placed after it.
     EqualStamps {
         /// Their number.
         rows: usize,
         /// The line or row of the first.
-        line: Place,
+        line: Location,
     },
     /// The file has more rows than are kept: each is the mean of several.
     Thinned {
@@ -69,7 +69,7 @@ pub enum Warning {
     /// The time starts again: the file contains several runs.
     ClockRestart {
         /// The line or row at which the new run begins.
-        line: Place,
+        line: Location,
         /// The last stamp before it (s).
         before: f64,
         /// Its first stamp in the file (s).
@@ -107,7 +107,7 @@ pub enum Warning {
         /// Their topic.
         topic: String,
         /// The first (the number of the message in the bag).
-        line: Place,
+        line: Location,
         /// Their number.
         messages: u64,
         /// By how much they are earlier, at most (s).
@@ -118,7 +118,7 @@ pub enum Warning {
         /// Their topic.
         topic: String,
         /// The first (the number of the message in the bag).
-        line: Place,
+        line: Location,
         /// Their number.
         messages: u64,
     },
@@ -161,7 +161,7 @@ pub enum Warning {
         /// Its header.
         column: String,
         /// The first line or row with such a cell.
-        line: Place,
+        line: Location,
         /// The content of that cell.
         found: String,
     },

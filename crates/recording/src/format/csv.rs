@@ -8,7 +8,7 @@ use csv::ByteRecord;
 use super::csv_text::{self, Comments, Separator, Squeezed};
 use super::{Format, Options};
 use crate::input::Input;
-use crate::place::Place;
+use crate::location::Location;
 use crate::table::{Cell, Row, RowSource, Table};
 use crate::{RecordingError, Warning, header};
 
@@ -23,7 +23,7 @@ impl Format for Csv {
     fn read(&self, input: Input, options: &Options<'_>) -> Result<Table, RecordingError> {
         let path = input.path.clone();
         if let Some((line, reason)) = csv_text::no_table(&input.head) {
-            let place = Place::Line(line);
+            let place = Location::Line(line);
             return Err(RecordingError::Row { path, place, reason });
         }
         let (comments, start) = csv_text::comments(&input.head);
@@ -99,7 +99,7 @@ struct Lines {
     /// Whether `newest` has not been returned yet.
     any: bool,
     /// The line of a last row that is cut.
-    cut: Option<Place>,
+    cut: Option<Location>,
 }
 
 impl Lines {
@@ -173,7 +173,7 @@ fn csv_error(path: &Path, error: csv::Error) -> RecordingError {
         csv::ErrorKind::Io(reason) => RecordingError::Read { path: path.to_owned(), reason },
         kind => RecordingError::Row {
             path: path.to_owned(),
-            place: Place::Line(line),
+            place: Location::Line(line),
             reason: match kind {
                 csv::ErrorKind::Utf8 { err, .. } => format!(
                     "cell {} is not UTF-8 (Latin-1?); save the file as UTF-8 (in spreadsheets \"CSV UTF-8\")",

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::*;
-use crate::{Place, Warning};
+use crate::{Location, Warning};
 
 fn recording() -> Recording {
     Recording {
@@ -149,7 +149,7 @@ fn a_file_cut_in_its_last_row_gives_what_is_whole() {
         // Without its newline alone, the last row is whole still.
         let rows = if cut == 1 { 3 } else { 2 };
         assert_eq!(read.len(), rows, "cut by {cut}");
-        assert_eq!(read.warnings.contains(&Warning::CutFile { line: Place::Line(4) }), cut > 1, "cut by {cut}");
+        assert_eq!(read.warnings.contains(&Warning::CutFile { line: Location::Line(4) }), cut > 1, "cut by {cut}");
     }
     assert!(refusal("t,q_a,tau_a\n0,1,2\n1,x,2\n2,1,2").contains("r.csv:3"));
 }
@@ -158,7 +158,7 @@ fn a_file_cut_in_its_last_row_gives_what_is_whole() {
 fn a_duplicated_row_is_left_out() {
     let read = read("t,q_a,tau_a\n0,1,2\n1,1,2\n1,1,2\n2,1,2\n").expect("it reads");
     assert_eq!(read.time, [0.0, 1.0, 2.0]);
-    let expected = Warning::Duplicates { rows: 1, line: Place::Line(4) };
+    let expected = Warning::Duplicates { rows: 1, line: Location::Line(4) };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
 }
 
@@ -167,7 +167,7 @@ fn rows_with_one_stamp_keep_their_order() {
     let read = read("t,q_a,tau_a\n0,1,2\n1,1,2\n1,2,2\n2,1,2\n").expect("it reads");
     assert_eq!((read.len(), &read.q[0][..]), (4, &[1.0, 1.0, 2.0, 1.0][..]));
     assert!(read.time.is_sorted_by(|a, b| a < b), "{:?}", read.time);
-    let expected = Warning::EqualStamps { rows: 1, line: Place::Line(4) };
+    let expected = Warning::EqualStamps { rows: 1, line: Location::Line(4) };
     assert!(read.warnings.contains(&expected), "{:?}", read.warnings);
     // The rows of two sources in turn are no recording.
     let pair = |k: usize| format!("{k},1,2\n{k},2,2\n");
@@ -186,7 +186,7 @@ fn runs_end_to_end_in_one_file_are_distinguished() {
     let read = read(&text).expect("two runs");
     assert_eq!((read.len(), read.breaks.as_slice()), (200, &[100][..]));
     assert!(read.time.windows(2).all(|pair| pair[1] > pair[0]));
-    let found = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: Place::Line(102), .. });
+    let found = |warning: &Warning| matches!(warning, Warning::ClockRestart { line: Location::Line(102), .. });
     assert!(read.warnings.iter().any(found), "{:?}", read.warnings);
 }
 
@@ -247,7 +247,7 @@ fn a_value_that_is_not_needed_may_be_missing() {
         let read = with(cell);
         assert_eq!((read.len(), &read.qd, read.temperature.len()), (3, &None, 0));
         let found = |column: &str| {
-            let line = Place::Line(3);
+            let line = Location::Line(3);
             let (column, found) = (column.to_owned(), cell.to_owned());
             read.warnings.contains(&Warning::ColumnLeftOut { column, line, found })
         };

@@ -7,7 +7,7 @@ use super::{Format, Options};
 use crate::bytes::Bytes;
 use crate::input::{Input, most_expanded};
 use crate::joint_state::{JointStates, TYPES};
-use crate::place::Place;
+use crate::location::Location;
 use crate::table::Table;
 use crate::{RecordingError, Warning};
 
@@ -106,7 +106,7 @@ pub fn read_into(input: &Input, options: &Options<'_>, states: &mut JointStates)
     let topics = reader.channels.values();
     let topics = topics.map(|channel| format!("{} ({})", channel.topic, channel.kind));
     let topics = topics.collect();
-    let place = Place::Message(states.messages() + 1);
+    let place = Location::Message(states.messages() + 1);
     let warning = (!is_whole).then_some(Warning::CutFile { line: place });
     Ok(Found { topics, warning })
 }

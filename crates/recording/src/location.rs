@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 /// A place in a file: a line of text, a row of a file without lines, or a message of a bag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Location {
     /// The line, from 1.
     Line(u64),
     /// The row, from 1.
@@ -15,7 +15,7 @@ pub enum Place {
     Message(u64),
 }
 
-impl Place {
+impl Location {
     /// The place as it is appended to the file's name.
     pub(crate) fn suffix(self) -> String {
         match self {
@@ -25,7 +25,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -35,7 +35,7 @@ impl fmt::Display for Place {
     }
 }
 
-impl Serialize for Place {
+impl Serialize for Location {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let (Self::Line(number) | Self::Row(number) | Self::Message(number)) = self;
         serializer.serialize_u64(*number)
