@@ -13,7 +13,7 @@ use effects::arm::{INERTIAL_PARAMETERS, INERTIAL_SCALE, LINK_INERTIAL_ERROR, PAY
 use effects::drive::ROTOR_INERTIA;
 use torque::Corrected;
 
-use self::scan::{JointPlaces, LinkPlaces, Place, Places};
+use self::scan::{ElementSpan, JointPlaces, LinkPlaces, Places};
 use crate::held::{self, Export, Held};
 use validate::nearest_body;
 
@@ -231,7 +231,7 @@ impl LinkPlaces {
     fn edit(&self, body: Option<Inertia>) -> Option<(Range<usize>, String)> {
         let Some(body) = body else {
             return match &self.inertial {
-                Place::At(range) => Some((range.clone(), String::new())),
+                ElementSpan::At(range) => Some((range.clone(), String::new())),
                 _ => None,
             };
         };

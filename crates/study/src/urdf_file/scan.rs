@@ -11,7 +11,7 @@ use quick_xml::events::{BytesStart, Event};
 use super::SOURCE;
 
 /// The place of an element, existing or to be inserted.
-pub(super) enum Place {
+pub(super) enum ElementSpan {
     /// The element takes these bytes.
     At(Range<usize>),
     /// The element is to be inserted before this byte, at the end of its parent.
@@ -20,7 +20,7 @@ pub(super) enum Place {
     Within(Range<usize>, String),
 }
 
-impl Place {
+impl ElementSpan {
     /// The edit that inserts `element` there; `parent` is its parent's tag.
     pub(super) fn place(&self, element: String, parent: &str) -> (Range<usize>, String) {
         match self {
@@ -33,14 +33,14 @@ impl Place {
 
 /// A link.
 pub(super) struct LinkPlaces {
-    pub(super) inertial: Place,
+    pub(super) inertial: ElementSpan,
     /// Its inertial, in the link's frame.
     pub(super) inertia: Inertia,
 }
 
 /// A joint.
 pub(super) struct JointPlaces {
-    pub(super) dynamics: Place,
+    pub(super) dynamics: ElementSpan,
     /// Whether an earlier diagnosis wrote it.
     pub(super) is_diagnosed: bool,
 }
@@ -154,7 +154,7 @@ impl Places {
                 Event::Empty(tag) if depth == 1 => {
                     let tag_text = text[here.clone()].trim_end_matches('>').trim_end_matches('/').trim_end();
                     if let Some(mut empty) = opened(&tag)? {
-                        let place = Place::Within(here, tag_text.to_owned());
+                        let place = ElementSpan::Within(here, tag_text.to_owned());
                         places.close(text, &mut empty, place)?;
                     }
                 }
@@ -178,7 +178,7 @@ impl Places {
                     if depth == 2
                         && let Some(mut closed) = open.take()
                     {
-                        let place = closed.found.take().map_or(Place::Before(here.start), Place::At);
+                        let place = closed.found.take().map_or(ElementSpan::Before(here.start), ElementSpan::At);
                         places.close(text, &mut closed, place)?;
                     }
                     depth -= 1;
@@ -192,14 +192,14 @@ impl Places {
     }
 
     /// The end of a link or joint of `text`.
-    fn close(&mut self, text: &str, element: &mut Open, place: Place) -> anyhow::Result<()> {
+    fn close(&mut self, text: &str, element: &mut Open, place: ElementSpan) -> anyhow::Result<()> {
         let name = std::mem::take(&mut element.name);
         if element.is_link {
             let inertia = match &place {
-                Place::At(range) => {
+                ElementSpan::At(range) => {
                     Inertia::from_urdf(&text[range.clone()]).with_context(|| format!("link \"{name}\""))?
                 }
-                Place::Before(_) | Place::Within(..) => Inertia::zero(),
+                ElementSpan::Before(_) | ElementSpan::Within(..) => Inertia::zero(),
             };
             self.links.insert(name, LinkPlaces { inertial: place, inertia });
         } else {
