@@ -1,11 +1,11 @@
 //! `testbed prove`: injected faults, sealed, diagnosed by processes without access to the ground truth, opened and scored.
 
+mod case_paths;
 mod cases;
 mod child;
 mod command;
 mod disturbance;
 mod experiments;
-mod place;
 mod proof;
 mod published;
 mod report;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail, ensure};
 use faults::{Campaign, CasePlan, FaultError, Robot, conceal_case, write_case};
 
-use super::place::Place;
+use super::case_paths::CasePaths;
 use super::{disturbance, tracking};
 use crate::cli::{ChainArgs, ProveArgs};
 use crate::conceal;
@@ -122,10 +122,10 @@ impl Cases {
     ///
     /// # Errors
     /// If a folder cannot be read, or has no case.
-    pub fn places(&self, out: &Path) -> anyhow::Result<Vec<Place>> {
+    pub fn places(&self, out: &Path) -> anyhow::Result<Vec<CasePaths>> {
         match self {
             Self::Drawn { plans, .. } => {
-                let place = |number: usize, name: &str| Place {
+                let place = |number: usize, name: &str| CasePaths {
                     number,
                     name: name.to_owned(),
                     folder: out.join("cases").join(name),
@@ -151,7 +151,7 @@ impl Cases {
     }
 
     /// The robot that a case is drawn on.
-    pub fn robot(&self, place: &Place) -> Option<&Robot> {
+    pub fn robot(&self, place: &CasePaths) -> Option<&Robot> {
         match self {
             Self::Drawn { robots, plans, .. } => plans.get(place.number).map(|plan| plan.robot(robots)),
             Self::Given { .. } => None,
@@ -162,7 +162,7 @@ impl Cases {
     ///
     /// # Errors
     /// If it cannot be made, or a given case is missing.
-    pub fn make(&self, place: &Place) -> anyhow::Result<()> {
+    pub fn make(&self, place: &CasePaths) -> anyhow::Result<()> {
         if place.truth.is_file() && place.folder.is_dir() {
             return Ok(());
         }
@@ -197,7 +197,7 @@ impl Cases {
     }
 }
 
-fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<Place>> {
+fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<CasePaths>> {
     let entries = std::fs::read_dir(cases).with_context(|| format!("--cases-from {}", cases.display()))?;
     let mut names: Vec<String> = entries
         .flatten()
@@ -220,7 +220,7 @@ fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<Place>> {
             "note: {left_out} of {all} cases have no ground truth in {truth}; they are omitted"
         ));
     }
-    let place = |(number, name): (usize, String)| Place {
+    let place = |(number, name): (usize, String)| CasePaths {
         number,
         folder: cases.join(&name),
         truth: truth.join(format!("{name}.json")),

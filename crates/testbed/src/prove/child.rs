@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 
-use super::place::Files;
+use super::case_paths::Files;
 use crate::interrupt;
 
 /// The file name of the recording of a proposed motion.

@@ -13,9 +13,9 @@ use faults::{Seal, SealedCase};
 use scoring::{Truth, true_terms, wrong_term};
 use serde::Serialize;
 
+use super::case_paths::{CasePaths, Files};
 use super::cases::Cases;
 use super::child::{Task, list};
-use super::place::{Files, Place};
 use super::proof::Proof;
 use super::rows::{self, Row};
 use super::shards::{self, Label};
@@ -86,13 +86,13 @@ pub fn run(args: &ProveArgs) -> anyhow::Result<()> {
 fn protocol(
     source: &Cases,
     vault: &Vault,
-    places: &[Place],
+    places: &[CasePaths],
     jobs: usize,
     times: &mut Times,
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
     if let Cases::Given { .. } = source {
         // An unreadable ground truth must be reported before hours of diagnoses, not after.
-        for Place { name, truth, .. } in places {
+        for CasePaths { name, truth, .. } in places {
             let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
             rows::truth::<Truth>(name, &text).with_context(|| format!("{}: correct or remove it", truth.display()))?;
         }
@@ -157,7 +157,7 @@ fn protocol(
     Ok((seal, rows?))
 }
 
-fn row(vault: &Vault, place: &Place, sealed: &SealedCase, truth: String) -> anyhow::Result<Row> {
+fn row(vault: &Vault, place: &CasePaths, sealed: &SealedCase, truth: String) -> anyhow::Result<Row> {
     let (record, diagnosis) = vault.answer(&format!("diagnoses/{}", place.name))?;
     let control = |name: &str| -> anyhow::Result<Option<String>> {
         Ok(vault.answer(&format!("controls/{}.{name}", place.name))?.1)

@@ -7,9 +7,9 @@ use faults::{FaultError, SealedCase, record_again, sha256_of};
 use scoring::Answer;
 use serde::{Deserialize, Serialize};
 
+use super::case_paths::CasePaths;
 use super::cases::Cases;
 use super::child::{MORE, NEXT, Task};
-use super::place::Place;
 use super::rows;
 use super::vault::{Vault, made_of};
 use crate::output;
@@ -54,8 +54,8 @@ impl Made {
 pub fn examined<'a>(
     source: &Cases,
     vault: &Vault,
-    pairs: &[(&'a Place, &'a SealedCase)],
-) -> anyhow::Result<Vec<(&'a Place, &'a SealedCase)>> {
+    pairs: &[(&'a CasePaths, &'a SealedCase)],
+) -> anyhow::Result<Vec<(&'a CasePaths, &'a SealedCase)>> {
     let Cases::Drawn { plans, .. } = source else {
         // The machine of a given case is not available.
         return Ok(Vec::new());
@@ -83,7 +83,7 @@ pub fn examined<'a>(
 ///
 /// # Errors
 /// If a file cannot be read or written, the process cannot be started, or the user interrupts.
-pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
+pub fn make(source: &Cases, vault: &Vault, place: &CasePaths, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
     let Cases::Drawn { robots, plans, .. } = source else {
         return Ok(());
     };
@@ -146,7 +146,7 @@ pub fn make(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, t
 ///
 /// # Errors
 /// If the diagnosis is not what its record says.
-pub fn result(vault: &Vault, place: &Place) -> anyhow::Result<(Option<String>, Option<String>)> {
+pub fn result(vault: &Vault, place: &CasePaths) -> anyhow::Result<(Option<String>, Option<String>)> {
     if let Some(reason) = record(vault, place).and_then(|made| made.failed) {
         return Ok((None, Some(reason)));
     }
@@ -154,23 +154,23 @@ pub fn result(vault: &Vault, place: &Place) -> anyhow::Result<(Option<String>, O
     Ok((text, record.and_then(|record| record.error)))
 }
 
-fn record(vault: &Vault, place: &Place) -> Option<Made> {
+fn record(vault: &Vault, place: &CasePaths) -> Option<Made> {
     serde_json::from_str(&std::fs::read_to_string(record_path(vault, place)).ok()?).ok()
 }
 
-fn record_path(vault: &Vault, place: &Place) -> PathBuf {
+fn record_path(vault: &Vault, place: &CasePaths) -> PathBuf {
     folder(vault, place).join("made.json")
 }
 
-fn folder(vault: &Vault, place: &Place) -> PathBuf {
+fn folder(vault: &Vault, place: &CasePaths) -> PathBuf {
     vault.out.join("next").join(&place.name)
 }
 
-fn first(place: &Place) -> String {
+fn first(place: &CasePaths) -> String {
     format!("diagnoses/{}", place.name)
 }
 
-fn second(place: &Place) -> String {
+fn second(place: &CasePaths) -> String {
     format!("next/{}/diagnosis", place.name)
 }
 

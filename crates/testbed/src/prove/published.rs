@@ -18,8 +18,8 @@ use faults::Seal;
 use scoring::{Answer, Published, PublishedFate, RobotScore};
 use serde::Serialize;
 
+use super::case_paths::CasePaths;
 use super::child::{Task, list};
-use super::place::Place;
 use super::vault::Vault;
 use super::work;
 use crate::cli::ProveArgs;
@@ -69,9 +69,9 @@ pub fn run(args: &ProveArgs, path: &Path, recordings: &Path) -> anyhow::Result<(
     let (robots, absent) = robots::there(&file, recordings)?;
     let vault = Vault::new(&args.out)?;
     let deferred = interrupt::Deferred::start();
-    let places: Vec<Place> =
+    let places: Vec<CasePaths> =
         robots.iter().enumerate().map(|(number, robot)| robots::place(number, robot, &vault.out)).collect();
-    let tasks: Vec<(&Robot, &Place)> = robots.iter().zip(&places).collect();
+    let tasks: Vec<(&Robot, &CasePaths)> = robots.iter().zip(&places).collect();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.map_or(cores, usize::from);
     work::all("copying", &tasks, jobs, |(robot, place)| robots::stage(robot, &recordings.join(&robot.name), place))?;
@@ -130,7 +130,7 @@ fn command(file: &Path, recordings: &Path) -> String {
 }
 
 /// The name of the fit of the published effects.
-fn control(place: &Place) -> String {
+fn control(place: &CasePaths) -> String {
     format!("controls/{}.said", place.name)
 }
 

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use self::closed_loop::Rate;
 use self::course::Course;
 use self::plan::Plan;
-use super::place::Files;
+use super::case_paths::Files;
 use crate::scenario::Scenario;
 use study::effect_file::EffectFile;
 

@@ -6,8 +6,8 @@ use anyhow::Context;
 use faults::{SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
+use super::case_paths::CasePaths;
 use super::cases::Cases;
-use super::place::Place;
 use super::rows;
 use super::tracking::Case;
 use super::vault::{Vault, made_of};
@@ -18,7 +18,7 @@ use crate::output;
 ///
 /// # Errors
 /// If the seal is broken, or the case cannot be tracked.
-pub fn track(source: &Cases, vault: &Vault, place: &Place, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
+pub fn track(source: &Cases, vault: &Vault, place: &CasePaths, sealed: &SealedCase, truth: &str) -> anyhow::Result<()> {
     let model = vault.model(&format!("diagnoses/{}", place.name))?;
     let named = sha256(model.as_deref().unwrap_or_default().as_bytes());
     let made_of = made_of([&vault.program.sha256, &sealed.inputs(), &sealed.truth, &named]);
@@ -64,11 +64,11 @@ struct Done {
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn text(vault: &Vault, place: &Place) -> anyhow::Result<String> {
+pub fn text(vault: &Vault, place: &CasePaths) -> anyhow::Result<String> {
     let path = file(vault, place, "json");
     std::fs::read_to_string(&path).with_context(|| path.display().to_string())
 }
 
-fn file(vault: &Vault, place: &Place, extension: &str) -> PathBuf {
+fn file(vault: &Vault, place: &CasePaths, extension: &str) -> PathBuf {
     vault.out.join("tracking").join(format!("{}.{extension}", place.name))
 }

@@ -7,9 +7,9 @@ use anyhow::{Context, ensure};
 use faults::{Program, Seal, SealedCase, sha256, sha256_of};
 use serde::{Deserialize, Serialize};
 
+use super::case_paths::{CasePaths, Files};
 use super::cases::Cases;
 use super::child::{self, Ended, Task};
-use super::place::{Files, Place};
 use crate::alone::Alone;
 use crate::output;
 
@@ -118,7 +118,7 @@ impl Vault {
     ///
     /// # Errors
     /// If a file cannot be read, or another program or other cases are sealed here.
-    pub fn seal(&self, places: &[Place], source: String) -> anyhow::Result<Seal> {
+    pub fn seal(&self, places: &[CasePaths], source: String) -> anyhow::Result<Seal> {
         let sealed: anyhow::Result<Vec<SealedCase>> = places
             .iter()
             .map(|place| {
@@ -157,7 +157,7 @@ impl Vault {
     ///
     /// # Errors
     /// If the seal is broken, the process cannot be started, or the user interrupts.
-    pub fn diagnose(&self, place: &Place, sealed: &SealedCase, name: &str, task: Task<'_>) -> anyhow::Result<()> {
+    pub fn diagnose(&self, place: &CasePaths, sealed: &SealedCase, name: &str, task: Task<'_>) -> anyhow::Result<()> {
         let (answer, record) = self.paths(name);
         let proposed = self.proposed(name);
         let mut inputs = sealed.inputs();
@@ -227,8 +227,8 @@ impl Vault {
     ///
     /// # Errors
     /// If one is not what its record says.
-    pub fn answers(&self, places: &[Place]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
-        let answer = |place: &Place| {
+    pub fn answers(&self, places: &[CasePaths]) -> anyhow::Result<BTreeMap<String, Option<String>>> {
+        let answer = |place: &CasePaths| {
             let (_, text) = self.answer(&format!("diagnoses/{}", place.name))?;
             Ok((place.name.clone(), text.map(|text| sha256(text.as_bytes()))))
         };

@@ -8,7 +8,7 @@ use faults::sha256_of;
 
 use super::file::{File, Robot};
 use crate::output;
-use crate::prove::place::Place;
+use crate::prove::case_paths::CasePaths;
 
 /// The robots whose folders are in `recordings`, with their published values in SI units, and the names of the others.
 ///
@@ -51,8 +51,8 @@ pub fn there(file: &File, recordings: &Path) -> anyhow::Result<(Vec<Robot>, Vec<
 }
 
 /// The place of a robot's copies and of its published values in the proof's folder `out`.
-pub fn place(number: usize, robot: &Robot, out: &Path) -> Place {
-    Place {
+pub fn place(number: usize, robot: &Robot, out: &Path) -> CasePaths {
+    CasePaths {
         number,
         name: robot.name.clone(),
         folder: out.join("cases").join(&robot.name),
@@ -75,7 +75,7 @@ pub fn names(robot: &Robot) -> Vec<(String, String)> {
 ///
 /// # Errors
 /// If a file cannot be copied, or was changed since it was copied.
-pub fn stage(robot: &Robot, folder: &Path, place: &Place) -> anyhow::Result<()> {
+pub fn stage(robot: &Robot, folder: &Path, place: &CasePaths) -> anyhow::Result<()> {
     std::fs::create_dir_all(&place.folder).with_context(|| place.folder.display().to_string())?;
     for (from, to) in names(robot) {
         let (from, to) = (folder.join(from), place.folder.join(to));

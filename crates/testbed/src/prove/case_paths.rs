@@ -6,7 +6,7 @@ use anyhow::{Context, ensure};
 
 /// A case: the paths of its files and of its ground truth.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct CasePaths {
     /// Its number, from 0.
     pub number: usize,
     /// Its name.
