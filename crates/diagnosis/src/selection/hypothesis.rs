@@ -24,7 +24,7 @@ fn refused(one: &Wanted, reason: impl Into<String>) -> DiagnosisError {
 
 /// A request, with indices of the study.
 #[derive(Clone, Copy)]
-struct Place<'a> {
+struct Request<'a> {
     wanted: &'a Wanted,
     joint: Option<usize>,
     other: Option<usize>,
@@ -35,9 +35,10 @@ struct Place<'a> {
 /// # Errors
 /// [`DiagnosisError::Wanted`], if an effect is given twice, is not in the catalogue, or not possible on such a joint.
 pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisError> {
-    let is_body = |place: &Place<'_>| place.wanted.effect == INERTIAL_PARAMETERS.name;
-    let (bodies, mut waiting): (Vec<Place<'_>>, Vec<Place<'_>>) = check(study, wanted)?.into_iter().partition(is_body);
-    let mut placed: Vec<Place<'_>> = Vec::new();
+    let is_body = |request: &Request<'_>| request.wanted.effect == INERTIAL_PARAMETERS.name;
+    let (bodies, mut waiting): (Vec<Request<'_>>, Vec<Request<'_>>) =
+        check(study, wanted)?.into_iter().partition(is_body);
+    let mut fitted: Vec<Request<'_>> = Vec::new();
     let products = study.training_products();
     let mut selected = study.problem(&products).choose(Vec::new(), &products.first_weights());
     // The time of an onset or a contact and the period of a ripple follow from the residual of the other effects.
@@ -47,28 +48,28 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
         }
         let products = study.training_products();
         let problem = study.problem(&products);
-        waiting.retain(|&place| {
-            if !suggest && place.wanted.sets_in == Some(true) {
+        waiting.retain(|&request| {
+            if !suggest && request.wanted.sets_in == Some(true) {
                 return true;
             }
-            match best(&problem, &selected, None, place) {
+            match best(&problem, &selected, None, request) {
                 Some(next) => {
                     selected = next;
-                    placed.push(place);
+                    fitted.push(request);
                     false
                 }
                 None => true,
             }
         });
-        selected = swept(&problem, selected, &placed);
+        selected = swept(&problem, selected, &fitted);
     }
-    for Place { wanted: one, .. } in waiting {
+    for Request { wanted: one, .. } in waiting {
         let place = one.joint.as_deref().unwrap_or("the whole arm");
         let remark = format!("{} on {place}: not testable with these recordings; it is not fitted", one.effect);
         study.data.motions.remarks.push(remark);
     }
     // Other bodies of links are a background of the fit, under a prior.
-    let links: Vec<Option<usize>> = bodies.iter().map(|place| place.joint).collect();
+    let links: Vec<Option<usize>> = bodies.iter().map(|request| request.joint).collect();
     if !links.is_empty() {
         if let Some(next) = study.with_requested_bodies(&links, &selected) {
             selected = next;
@@ -97,8 +98,8 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
 }
 
 /// The indices of the joints.
-fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, DiagnosisError> {
-    let mut places = Vec::new();
+fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Request<'a>>, DiagnosisError> {
+    let mut requests = Vec::new();
     for (k, one) in wanted.iter().enumerate() {
         let number = |name: &String| study.data.arm.joints().iter().position(|joint| joint.name == *name);
         let joint_of = |name: &Option<String>| match name {
@@ -129,9 +130,9 @@ fn check<'a>(study: &Study, wanted: &'a [Wanted]) -> Result<Vec<Place<'a>>, Diag
             return Err(refused(one, "is given twice; give it once"));
         }
         let wanted = one;
-        places.push(Place { wanted, joint, other });
+        requests.push(Request { wanted, joint, other });
     }
-    Ok(places)
+    Ok(requests)
 }
 
 /// The reason why an effect is refused that is not in the catalogue, with the name that is probably meant (a title is also
@@ -162,7 +163,7 @@ fn best(
     problem: &Problem<'_>,
     selected: &Selection,
     instead: Option<usize>,
-    Place { wanted, joint, other }: Place<'_>,
+    Request { wanted, joint, other }: Request<'_>,
 ) -> Option<Selection> {
     let mut others = selected.set.clone();
     if let Some(at) = instead {
@@ -201,11 +202,11 @@ fn best(
 }
 
 /// `selected` with each effect in the form that is best with the others' forms.
-fn swept(problem: &Problem<'_>, mut selected: Selection, placed: &[Place<'_>]) -> Selection {
+fn swept(problem: &Problem<'_>, mut selected: Selection, fitted: &[Request<'_>]) -> Selection {
     for _ in 0..SWEEPS {
         let before = selected.set.clone();
-        for (at, &place) in placed.iter().enumerate() {
-            if let Some(next) = best(problem, &selected, Some(at), place) {
+        for (at, &request) in fitted.iter().enumerate() {
+            if let Some(next) = best(problem, &selected, Some(at), request) {
                 selected = next;
             }
         }
