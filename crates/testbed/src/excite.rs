@@ -19,7 +19,7 @@ use torque::Motion;
 
 use crate::cli::ExciteArgs;
 use crate::output::{self, OutputFile};
-use crate::scenario::written;
+use crate::scenario::writer;
 use crate::written::Written;
 use study::robot::{RobotFile, named_robot};
 
@@ -62,7 +62,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<()> {
     let compared = compare::qualities(&recordings, &arm, &limits, &found)?;
     let mut files = Written::default();
     if let Some(path) = &args.scenario {
-        let robot = written::robot_from(path, &args.robot, &robot.path)?;
+        let robot = writer::robot_from(path, &args.robot, &robot.path)?;
         files.add(path, || output::write_text(path, &scenario(&robot, &arm, &found)));
     }
     if let Some(path) = &args.csv {
@@ -315,7 +315,7 @@ fn scenario(robot: &str, arm: &Arm, found: &Excitation) -> String {
     text +=
         "# Collisions of the arm with itself and with its surroundings are not checked: run the motion slowly first.\n";
     text += "# On a robot, follow the references that --csv writes; the motion begins and ends at rest.\n";
-    text + &written::scenario("Excitation", robot, arm, found.duration, &found.reference)
+    text + &writer::scenario("Excitation", robot, arm, found.duration, &found.reference)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 mod raw;
 mod validate;
-pub mod written;
+pub mod writer;
 
 use std::path::PathBuf;
 

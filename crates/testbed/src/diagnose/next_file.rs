@@ -10,7 +10,7 @@ use report::next_words::name;
 use report::{numbers, words};
 use torque::Reference;
 
-use crate::scenario::written;
+use crate::scenario::writer;
 
 /// The first line of a proposal, by which a file is recognised that may be replaced and removed.
 const FIRST_LINE: &str = "# The next experiment, proposed by testbed diagnose.\n";
@@ -59,7 +59,7 @@ pub fn write(
     next: &NextExperiment,
     motion: &Reference,
 ) -> anyhow::Result<()> {
-    let robot = written::robot_from(path, robot, urdf)?;
+    let robot = writer::robot_from(path, robot, urdf)?;
     let text = text(&robot, arm, next, motion);
     recording::write_whole(path, |file| file.write_all(text.as_bytes()))?;
     Ok(())
@@ -112,7 +112,7 @@ fn text(robot: &str, arm: &Arm, next: &NextExperiment, motion: &Reference) -> St
     line("Collisions with the environment are not checked: run the motion slowly first.");
     line("On a robot, follow the columns reference_<joint> of the recording that this scenario writes.");
     let duration = next.duration.unwrap_or_default();
-    text + &written::scenario("The next experiment", robot, arm, duration, motion)
+    text + &writer::scenario("The next experiment", robot, arm, duration, motion)
 }
 
 #[cfg(test)]
