@@ -37,7 +37,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// Whether it is proportional to the recorded torque, so that it is no better known than the torque constants.
-    pub fn is_of_torque(self) -> bool {
+    pub fn scales_with_torque(self) -> bool {
         match self {
             Self::Torque | Self::Damping | Self::Drag | Self::Inertia | Self::Stiffness | Self::Mass | Self::Force => {
                 true

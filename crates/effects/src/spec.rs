@@ -241,7 +241,7 @@ pub struct Spec {
     pub read: fn(Effect, &mut dyn Estimate) -> Option<Effect>,
     /// The term of an effect that is a function of the commanded torque on the joint of an index, with the sizes of the effect;
     /// its coefficient is one.
-    pub of_torque: fn(&Effect, usize) -> Option<Term>,
+    pub of_command: fn(&Effect, usize) -> Option<Term>,
     /// What is wrong with its parameters, apart from their ranges: the parameter, its value and the requirement.
     pub refuse: fn(&Effect) -> Option<(&'static str, f64, &'static str)>,
     /// The one effect that acts as two of them on one joint do together; `None` if they stay two.
@@ -326,7 +326,7 @@ impl Spec {
         is_contradicted: |_, _| false,
         dry_friction: |_| None,
         read: |_, _| None,
-        of_torque: |_, _| None,
+        of_command: |_, _| None,
         refuse: |_| None,
         sum: |_, _| None,
         is_twin: |_, _| true,

@@ -86,7 +86,7 @@ pub struct Law {
     /// Adds what a fit found to the arm about which columns are evaluated.
     pub carry: Option<fn(&Term, f64, &mut Carried)>,
     /// Whether it is computed from the measured torque, which is not known for a planned motion.
-    pub is_of_torque: bool,
+    pub uses_measured_torque: bool,
     /// Whether it limits the torque, so that it is zero in a planned motion within the limit.
     pub cuts: bool,
 }
@@ -108,7 +108,7 @@ impl Law {
         link_side: None,
         is_of_base: false,
         carry: None,
-        is_of_torque: false,
+        uses_measured_torque: false,
         cuts: false,
     };
 }

@@ -14,7 +14,7 @@ pub struct Known {
     pub arm: Arm,
     model: Option<Corrected>,
     /// Known effects that are functions of the commanded torque.
-    of_torque: Vec<Effect>,
+    of_command: Vec<Effect>,
 }
 
 /// What was subtracted, each `[chunk][joint][tick]`.
@@ -34,12 +34,12 @@ impl Known {
     /// [`DiagnosisError`], if an effect does not fit the arm.
     pub fn new(arm: &Arm, effects: &[Effect]) -> Result<Self, DiagnosisError> {
         if effects.is_empty() {
-            return Ok(Self { arm: arm.clone(), model: None, of_torque: Vec::new() });
+            return Ok(Self { arm: arm.clone(), model: None, of_command: Vec::new() });
         }
         let (simulated, now): (Vec<Effect>, Vec<Effect>) = effects.iter().cloned().partition(is_simulated);
         let model = Corrected::new(arm, &now)?;
-        let of_torque = simulated.into_iter().filter(|effect| effect.of_torque(0).is_some());
-        Ok(Self { arm: model.arm().clone(), model: Some(model), of_torque: of_torque.collect() })
+        let of_command = simulated.into_iter().filter(|effect| effect.of_command(0).is_some());
+        Ok(Self { arm: model.arm().clone(), model: Some(model), of_command: of_command.collect() })
     }
 
     /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets.
@@ -97,8 +97,8 @@ impl Known {
         let terms: Vec<(usize, Term)> = joints
             .flat_map(|(joint, described)| {
                 let is_here = |effect: &&Effect| effect.joint() == Some(&*described.name);
-                let here = self.of_torque.iter().filter(is_here);
-                here.filter_map(move |effect| Some((joint, effect.of_torque(joint)?)))
+                let here = self.of_command.iter().filter(is_here);
+                here.filter_map(move |effect| Some((joint, effect.of_command(joint)?)))
             })
             .collect();
         if terms.is_empty() {

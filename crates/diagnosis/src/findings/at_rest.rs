@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::findings::sentences::of_torque;
+use crate::findings::sentences::relative_to_torque;
 use crate::selection::FinalFit;
 use crate::thresholds::{LEAST_AT_REST, LEAST_REST, MOST_IN_MOTION};
 use crate::words::list;
@@ -55,7 +55,7 @@ pub fn note(last: &FinalFit) -> Option<String> {
         list(&names),
         at(longest.rows.start),
         at(longest.rows.end - 1),
-        of_torque(share),
+        relative_to_torque(share),
     ))
 }
 

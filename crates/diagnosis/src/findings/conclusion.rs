@@ -302,7 +302,7 @@ fn fit(last: &FinalFit) -> BTreeMap<String, JointFit> {
 /// Removes known gaps and springs between drive and link from `findings`: their torque depends on the links, which may be wrong, so
 /// that they are found again instead of subtracted. Returns remarks on those that are not found, or with another size.
 fn without_known(data: &Data, options: &Options, findings: &mut Vec<(Finding, Option<usize>)>) -> Vec<String> {
-    let is_found_again = |known: &&Effect| known.spec().is_simulated && known.of_torque(0).is_none();
+    let is_found_again = |known: &&Effect| known.spec().is_simulated && known.of_command(0).is_none();
     let mut remarks = Vec::new();
     for known in options.known.iter().filter(is_found_again) {
         let is_same = |finding: &Finding| known.name() == finding.effect && known.joint() == finding.joint.as_deref();

@@ -106,7 +106,7 @@ fn had_other_form(effect: &Effect) -> bool {
 }
 
 /// A ratio of standard deviations in words; a ratio above one is not given as a percentage.
-pub fn of_torque(ratio: f64) -> String {
+pub fn relative_to_torque(ratio: f64) -> String {
     if ratio >= 1.005 {
         format!("{} times the torque's standard deviation", number(ratio))
     } else {
@@ -226,8 +226,8 @@ pub fn of(finding: &Finding, fit: &BTreeMap<String, JointFit>) -> String {
         return format!("{place}, {between}: {what}{smaller}");
     }
     let share = match finding.joint {
-        Some(_) => of_torque(finding.share),
-        None => format!("up to {} of a joint", of_torque(finding.share)),
+        Some(_) => relative_to_torque(finding.share),
+        None => format!("up to {} of a joint", relative_to_torque(finding.share)),
     };
     let effect = match held_out {
         Some((joint, before, after)) if finding.joint.is_none() => {

@@ -214,7 +214,7 @@ impl<'a> Prospect<'a> {
             if is_carried(term) || term.law.cuts {
                 continue;
             }
-            if term.law.is_of_torque {
+            if term.law.uses_measured_torque {
                 own.push((term, value));
                 continue;
             }

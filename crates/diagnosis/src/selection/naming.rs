@@ -124,7 +124,7 @@ impl Estimate for Reader<'_> {
         // A mass is never known more accurately than the torque constants.
         let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
         let accuracy = match (quantity, self.study.stated.gain) {
-            (Some(quantity), Some(accuracy)) if quantity.is_of_torque() => NORMAL_95 * accuracy,
+            (Some(quantity), Some(accuracy)) if quantity.scales_with_torque() => NORMAL_95 * accuracy,
             _ => 0.0,
         };
         let (value, mut ci95) = self.resampled.interval_within(systematic + accuracy, f);

@@ -205,7 +205,7 @@ const SAME_ERROR: f64 = 0.002;
 /// Checks that the error with the exported effects as known effects (`again`) is the reported one to within a `part` of it, because
 /// exported laws are the fitted ones. Known gaps and springs between drive and link are found again instead of subtracted.
 pub fn exports_what_it_reports(diagnosis: &Diagnosis, again: &Diagnosis, part: f64) {
-    let is_found_again = |effect: &Effect| effect.spec().is_simulated && effect.of_torque(0).is_none();
+    let is_found_again = |effect: &Effect| effect.spec().is_simulated && effect.of_command(0).is_none();
     if diagnosis.effects.iter().any(is_found_again) {
         return;
     }

@@ -55,7 +55,7 @@ pub static ACTUATION_DELAY: Spec = Spec {
     },
     // Delays add up.
     is_twin: |_, _| false,
-    of_torque: |effect, joint| Some(Term::on(&LATE, joint).sized([effect.number("delay")])),
+    of_command: |effect, joint| Some(Term::on(&LATE, joint).sized([effect.number("delay")])),
     apply: |effect, at, machine| machine.delays[at.joint] += effect.number("delay"),
     ..Spec::EMPTY
 };
@@ -65,7 +65,7 @@ pub static LATE: Law = Law {
     name: "late",
     column: |term, joint, motion| Some(late(&motion.tau[joint], term.sizes[0] / motion.period)),
     sizes: &[(Size::Main, 0)],
-    is_of_torque: true,
+    uses_measured_torque: true,
     ..Law::PLAIN
 };
 

@@ -54,7 +54,7 @@ pub static TORQUE_SATURATION: Spec = Spec {
     },
     // The lower limit counts.
     is_twin: |_, _| false,
-    of_torque: |effect, joint| Some(Term::on(&EXCESS, joint).sized([effect.number("limit")])),
+    of_command: |effect, joint| Some(Term::on(&EXCESS, joint).sized([effect.number("limit")])),
     apply: |effect, at, machine| machine.limits[at.joint] = machine.limits[at.joint].min(effect.number("limit")),
     region: |terms, joint| {
         let limit = terms.first()?.sizes[0];

@@ -135,9 +135,9 @@ impl Effect {
         (self.spec.own_sentence)(self).unwrap_or(self.spec.sentence)
     }
 
-    /// Its term on the joint of an index, as [`Spec::of_torque`] gives it.
-    pub fn of_torque(&self, joint: usize) -> Option<Term> {
-        (self.spec.of_torque)(self, joint)
+    /// Its term on the joint of an index, as [`Spec::of_command`] gives it.
+    pub fn of_command(&self, joint: usize) -> Option<Term> {
+        (self.spec.of_command)(self, joint)
     }
 
     /// The joint it is on; `None` for the whole arm.
