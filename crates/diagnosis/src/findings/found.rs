@@ -17,7 +17,7 @@ use crate::selection::gain::held_out_gain;
 use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::payload::as_last_link;
-use crate::selection::rivals::{Rival, Standing, probability, standing};
+use crate::selection::rivals::{Comparison, Rival, probability, standing};
 use crate::selection::torque_constants;
 use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MUCH_WRONG_LINKS, SUREST, UNSURE_MASS};
 
@@ -25,7 +25,7 @@ use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MUCH_WRONG_LINKS, SURES
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
     let problem = last.problem();
     let standing = |member: &Member| standing(&last.study, &problem, &last.judged.named, member.candidate);
-    let standings: Vec<(&Member, Standing)> =
+    let standings: Vec<(&Member, Comparison)> =
         last.judged.members.iter().map(|member| (member, standing(member))).collect();
     let beside = possible_beside(last, &standings);
     standings
@@ -40,7 +40,7 @@ pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
         .collect()
 }
 
-fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &Standing) -> Vec<Finding> {
+fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &Comparison) -> Vec<Finding> {
     let study = &last.study;
     let candidate = &study.candidates[member.candidate];
     let joint_name = |joint: usize| study.data.arm.joints()[joint].name.clone();

@@ -8,10 +8,10 @@ use crate::search::candidate::Hypothesis;
 use crate::search::problem::Problem;
 use crate::selection::FinalFit;
 use crate::selection::judge::Member;
-use crate::selection::rivals::{Rival, Standing};
+use crate::selection::rivals::{Comparison, Rival};
 
 /// The friction that may be on a joint beside the one that is named there: alternatives of its Coulomb or viscous friction.
-pub fn possible_beside(last: &FinalFit, of: &[(&Member, Standing)]) -> Vec<Rival> {
+pub fn possible_beside(last: &FinalFit, of: &[(&Member, Comparison)]) -> Vec<Rival> {
     let study = &last.study;
     let is_plain = |member: &Member| study.candidates[member.candidate].hypothesis.is_plain_friction();
     let plain = of.iter().filter(|(member, _)| is_plain(member));

@@ -17,7 +17,7 @@ pub type Rival = (Hypothesis, Option<usize>);
 
 /// The comparison of a finding with its alternatives.
 #[derive(Clone, Debug)]
-pub struct Standing {
+pub struct Comparison {
     /// Effects that explain nearly as much, the best first.
     pub rivals: Vec<Rival>,
     /// Two effects that explain nearly as much together, and neither alone, the best first.
@@ -31,7 +31,7 @@ pub struct Standing {
     pub as_likely: Option<Rival>,
 }
 
-impl Standing {
+impl Comparison {
     /// The probability that the name is right, for a finding of some evidence (nats).
     ///
     /// It is one half if an alternative does equally well, and increases with the margin; the scale was calibrated on simulated
@@ -90,7 +90,7 @@ pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) 
 }
 
 /// Tries every other hypothesis in the place of `member`.
-pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, member: usize) -> Standing {
+pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, member: usize) -> Comparison {
     let finding = &study.candidates[member];
     let set = beside(study, selected, member);
     let without = problem.choose(set.clone(), &selected.fit.weights);
@@ -192,7 +192,7 @@ pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
     // Neither the motion nor its size tells what a constant torque is that is smaller than the friction.
     let over_alias = if alias.is_some() && decided.is_none() { 0.0 } else { f64::INFINITY };
     let margin = margin_over_single.min(of_all_joints).min(over_alias);
-    Standing { rivals, pairs: pairs.into_iter().map(|pair| pair.2).collect(), margin, margin_over_single, as_likely }
+    Comparison { rivals, pairs: pairs.into_iter().map(|pair| pair.2).collect(), margin, margin_over_single, as_likely }
 }
 
 /// The loss and the score of `next` (nats), in which `alternatives` stand in the place of `member`, beyond those of `selected`; or, if
