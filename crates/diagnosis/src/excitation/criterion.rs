@@ -63,7 +63,7 @@ impl<'a> Criterion<'a> {
     /// Value and gradient at `coefficients`: the mean over the parameters of the logarithm of their standard deviation (up to a
     /// constant), plus [`CONDITION`] times the logarithm of the condition number, plus `hardness` times the mean square by which
     /// limits are exceeded, relative to them.
-    pub fn look(&self, coefficients: &[f64], hardness: f64) -> (f64, Vec<f64>) {
+    pub fn evaluate(&self, coefficients: &[f64], hardness: f64) -> (f64, Vec<f64>) {
         let samples: Vec<Sample> = self
             .factors
             .par_iter()
@@ -248,12 +248,13 @@ mod tests {
         for (scale, is_beyond) in [(0.05, false), (0.8, true)] {
             let at = waves(scale, 1.7);
             let along = waves(1.0, 0.9);
-            let (value, gradient) = criterion.look(&at, 10.0);
+            let (value, gradient) = criterion.evaluate(&at, 10.0);
             let slope: f64 = gradient.iter().zip(&along).map(|(g, d)| g * d).sum();
             let moved = |step: f64| -> Vec<f64> { at.iter().zip(&along).map(|(a, d)| a + step * d).collect() };
-            let difference = (criterion.look(&moved(1e-7), 10.0).0 - criterion.look(&moved(-1e-7), 10.0).0) / 2e-7;
+            let difference =
+                (criterion.evaluate(&moved(1e-7), 10.0).0 - criterion.evaluate(&moved(-1e-7), 10.0).0) / 2e-7;
             assert!((slope - difference).abs() < 1e-3 * difference.abs().max(1.0), "{slope} instead of {difference}");
-            assert_eq!(criterion.look(&at, 20.0).0 > value, is_beyond);
+            assert_eq!(criterion.evaluate(&at, 20.0).0 > value, is_beyond);
         }
     }
 

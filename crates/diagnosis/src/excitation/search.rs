@@ -29,8 +29,8 @@ pub fn best(
     let iterations = |list: &[(f64, u64)]| list.iter().map(|(_, count)| *count).sum::<u64>() as f64;
     let total = EVALUATIONS * (starts.len() as f64 * iterations(&EACH) + iterations(&BEST));
     let done = AtomicU64::new(0);
-    let look = |at: &[f64], hardness: f64| {
-        let found = criterion.look(at, hardness);
+    let objective = |at: &[f64], hardness: f64| {
+        let found = criterion.evaluate(at, hardness);
         progress((done.fetch_add(1, Ordering::Relaxed) as f64 / total).min(1.0));
         found
     };
@@ -39,7 +39,7 @@ pub fn best(
     for (number, mut at) in starts.into_iter().enumerate() {
         let mut value = f64::INFINITY;
         for (hardness, most) in EACH {
-            (value, at) = descend(&look, at, hardness, most)?;
+            (value, at) = descend(&objective, at, hardness, most)?;
         }
         if found.as_ref().is_none_or(|(least, _)| value < *least) {
             found = Some((value, at));
@@ -48,21 +48,21 @@ pub fn best(
     }
     let (_, mut at) = found.ok_or_else(|| format!("none of {count} starts led to a motion"))?;
     for (hardness, most) in BEST {
-        (_, at) = descend(&look, at, hardness, most)?;
+        (_, at) = descend(&objective, at, hardness, most)?;
     }
     progress(1.0);
     Ok(at)
 }
 
-type Look<'a> = dyn Fn(&[f64], f64) -> (f64, Vec<f64>) + 'a;
+type Objective<'a> = dyn Fn(&[f64], f64) -> (f64, Vec<f64>) + 'a;
 
 /// The lowest value on the descent from `start`, and its coefficients.
-fn descend(look: &Look<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result<(f64, Vec<f64>), String> {
+fn descend(objective: &Objective<'_>, start: Vec<f64>, hardness: f64, most: u64) -> Result<(f64, Vec<f64>), String> {
     let descent = Descent::new(
         PATIENCE,
         |_| NO_GAIN,
         |at| {
-            let (value, gradient) = look(at, hardness);
+            let (value, gradient) = objective(at, hardness);
             let is_finite = value.is_finite() && gradient.iter().all(|slope| slope.is_finite());
             is_finite.then_some((value, gradient)).ok_or("the criterion is not finite")
         },
