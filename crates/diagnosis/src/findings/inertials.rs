@@ -10,7 +10,7 @@ use effects::{Effect, Regressor};
 use crate::regression::bodies::{LeastBody, PER_LINK, physical};
 use crate::report::{Confusable, Dependence, Finding, LinkInertials, Parameter, Unexplained};
 use crate::search::candidate::Hypothesis;
-use crate::search::study::About;
+use crate::search::study::LinearisationPoint;
 use crate::selection::FinalFit;
 use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
@@ -102,7 +102,7 @@ pub fn inertials(last: &FinalFit, are_requested: bool) -> Inertials {
         return Inertials::default();
     }
     // The links with their scale errors, without payload, tilt and other effects.
-    let nominal: Vec<f64> = About::scaled(data, table, &judged.named.fit).inertial_parameters();
+    let nominal: Vec<f64> = LinearisationPoint::scaled(data, table, &judged.named.fit).inertial_parameters();
     let place = |link: usize, parameter: usize| {
         let is_it = |&column: &usize| {
             let term = table.terms[column];

@@ -12,7 +12,7 @@ use crate::regression::columns::values;
 use crate::regression::fit::{Products, evidence_rate};
 use crate::regression::table::{Moving, Table};
 use crate::search::physics::is_possible;
-use crate::search::study::About;
+use crate::search::study::LinearisationPoint;
 use crate::selection::{FinalFit, rivals};
 
 /// The pause between the last recording and the motion (s).
@@ -33,7 +33,7 @@ pub struct Pair {
 /// The recordings reduced to some columns, to which a motion can be added.
 pub struct Prospect<'a> {
     pub last: &'a FinalFit,
-    about: About,
+    point: LinearisationPoint,
     nominal: Vec<f64>,
     /// Indices of the study's columns, in ascending order.
     columns: Vec<usize>,
@@ -89,7 +89,7 @@ impl<'a> Prospect<'a> {
         }
         Some(Self {
             last,
-            about: About::last(data, table, fit, &last.study.load_tensor),
+            point: LinearisationPoint::last(data, table, fit, &last.study.load_tensor),
             nominal: data.arm.inertial_parameters(),
             needed: if terms.iter().any(needs) { Needed::All } else { Needed::WithoutDerivatives },
             grid: (period, Kernel::new(data.motions.cutoff, period), stride),
@@ -118,7 +118,7 @@ impl<'a> Prospect<'a> {
         let (data, thresholds) = (&self.last.study.data, &self.last.study.thresholds);
         let (dof, fit) = (data.motions.dof, &self.last.judged.named.fit);
         let mut chunk = self.chunk(reference);
-        let About { arm, offset, .. } = &self.about;
+        let LinearisationPoint { arm, offset, .. } = &self.point;
         let rigid = Rigid::with(arm, &self.nominal, offset, &chunk, self.needed);
         self.add_torques(&mut chunk, &rigid);
         let largest = chunk.tau.iter().map(|tau| tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs())));
@@ -149,7 +149,7 @@ impl<'a> Prospect<'a> {
             remarks: Vec::new(),
         };
         let terms = self.bare.terms.clone();
-        let table = Table::new(&motions, &[rigid], &data.scales, terms, &self.about.carried, Moving::ThroughReversals);
+        let table = Table::new(&motions, &[rigid], &data.scales, terms, &self.point.carried, Moving::ThroughReversals);
         let seconds_of_all: Vec<f64> = data.seconds.iter().copied().chain([seconds]).collect();
         let new = Products::new(&table, |_| true, &seconds_of_all, &tempo, &data.floor);
         let new = new.picked(&table, &(0..self.columns.len()).collect::<Vec<_>>());
@@ -204,7 +204,7 @@ impl<'a> Prospect<'a> {
     /// The torques that the motion needs by the findings.
     fn add_torques(&self, chunk: &mut Chunk, rigid: &Rigid) {
         let fit = &self.last.judged.named.fit;
-        let is_carried = |term: Term| self.about.carried.iter().any(|(carried, _)| *carried == term);
+        let is_carried = |term: Term| self.point.carried.iter().any(|(carried, _)| *carried == term);
         let scales = &self.last.study.data.scales;
         let mut free = rigid.tau.clone();
         let mut own = Vec::new();

@@ -26,19 +26,19 @@ use crate::thresholds::{
 };
 use crate::trace::Trace;
 
-mod about;
 mod anew;
 mod constants;
 mod formed;
 mod friction_changes;
+mod linearisation_point;
 mod links;
 mod notes;
 mod own_friction;
 mod payloads;
 mod strengths;
 
-pub use about::About;
 use formed::Formed;
+pub use linearisation_point::LinearisationPoint;
 pub use strengths::moved;
 
 /// The data, and the columns and candidates that may explain them.

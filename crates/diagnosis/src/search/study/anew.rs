@@ -6,8 +6,8 @@ use effects::background::OWN_LOAD;
 use effects::laws::RIGID;
 use rayon::prelude::*;
 
-use super::about::inertial_changes;
-use super::{About, Study};
+use super::linearisation_point::inertial_changes;
+use super::{LinearisationPoint, Study};
 use crate::data::Data;
 use crate::data::motion::Chunk;
 use crate::data::rigid::Rigid;
@@ -139,7 +139,7 @@ impl Study {
 
     pub(super) fn about(&mut self, fit: &Fit, kept: &[usize], anyway: bool) -> Option<Vec<usize>> {
         self.set_bodies(fit);
-        let stages = About::stages(&self.data, &self.table, fit, &self.load_tensor);
+        let stages = LinearisationPoint::stages(&self.data, &self.table, fit, &self.load_tensor);
         let last = &stages[stages.len() - 1].1;
         // The arm contains no effect, neither of this fit nor of an earlier selection.
         let carries = !last.carried.is_empty() || last.bare.is_some();
@@ -149,8 +149,13 @@ impl Study {
         self.carries = carries;
         self.carried.clone_from(&last.carried);
         let nominal = self.data.arm.inertial_parameters();
-        let rigid: Vec<Rigid> =
-            self.data.motions.chunks.par_iter().map(|chunk| About::along(&stages, &nominal, chunk)).collect();
+        let rigid: Vec<Rigid> = self
+            .data
+            .motions
+            .chunks
+            .par_iter()
+            .map(|chunk| LinearisationPoint::along(&stages, &nominal, chunk))
+            .collect();
         let before = self.with_rest_of(fit, rigid);
         let same_regressor = self.data.rigid.iter().zip(&before).all(|(now, before)| now.has_regressor_of(before));
         for joint in 0..self.data.motions.dof {

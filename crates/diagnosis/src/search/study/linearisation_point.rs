@@ -12,7 +12,7 @@ use crate::regression::fit::Fit;
 use crate::regression::table::Table;
 
 /// An arm with the effects of a fit.
-pub struct About {
+pub struct LinearisationPoint {
     /// The arm with payload, link errors, scale and base.
     pub arm: Arm,
     /// The true positions of the joints minus the encoders' (rad or m).
@@ -25,7 +25,7 @@ pub struct About {
     pub carried: Vec<(Term, f64)>,
 }
 
-impl About {
+impl LinearisationPoint {
     /// The arm of `data` with the links' scale errors of `fit`, and nothing else.
     pub fn scaled(data: &Data, table: &Table, fit: &Fit) -> Arm {
         collected(data, table, fit, f64::NEG_INFINITY).0.arm
@@ -200,14 +200,14 @@ mod tests {
         let along = |values: [f64; 4], moments: Option<[[f64; 6]; 4]>| {
             let [mass, x, y, z] = values;
             let payload = Inertia { mass, com: Vector3::new(x, y, z) / mass, tensor: Matrix3::identity() * 1e-3 };
-            let about = About {
+            let point = LinearisationPoint {
                 arm: arm.clone().with_payload(&payload),
                 offset: vec![0.0; 3],
                 bare: None,
                 moments,
                 carried: Vec::new(),
             };
-            about.rigid(&arm.inertial_parameters(), &chunk)
+            point.rigid(&arm.inertial_parameters(), &chunk)
         };
         let moments = moments_by_first(values[0], Vector3::new(values[1], values[2], values[3]));
         let columns = along(values, Some(moments)).payload;
