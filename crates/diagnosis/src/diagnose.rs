@@ -7,9 +7,9 @@ use arm::Arm;
 use crate::data::input::{Input, check};
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnosisError;
-use crate::look::Look;
 use crate::next;
 use crate::options::{Options, Step};
+use crate::pass::Pass;
 use crate::thresholds::{CUTOFF, MOST_LAGS};
 use crate::torque_lag::{Lagging, Lags, TorqueLag, WithoutLag, remark_on_own};
 
@@ -27,7 +27,7 @@ pub fn diagnose(
 ) -> Result<Diagnosis, DiagnosisError> {
     let (first, lags, without_lag) = without_torque_lag(arm, inputs, options, progress)?;
     let inputs = &without_lag.of(inputs)[..];
-    let Look { last, conclusion } = first.or_slower(arm, inputs, options, progress)?;
+    let Pass { last, conclusion } = first.or_slower(arm, inputs, options, progress)?;
     let next = if options.next && conclusion.not_enough_data.is_empty() {
         progress(Step::new(0.8, "next experiment"));
         Some(next::propose(&last, &conclusion, arm, &options.known)?)
@@ -44,22 +44,22 @@ pub fn diagnose(
     Ok(diagnosis)
 }
 
-/// A look at the recordings without the lags of their torques, these lags, and these recordings. Without a stated lag, they are those that the
-/// residuals of a look show, if they do.
+/// A pass over the recordings without the lags of their torques, these lags, and these recordings. Without a stated lag, they are those that the
+/// residuals of a pass show, if they do.
 fn without_torque_lag(
     arm: &Arm,
     inputs: &[Input<'_>],
     options: &Options,
     progress: &dyn Fn(Step<'_>),
-) -> Result<(Look, Lags, WithoutLag), DiagnosisError> {
+) -> Result<(Pass, Lags, WithoutLag), DiagnosisError> {
     let stated = options.torque_lag.or(options.only.is_some().then_some(0.0));
     let mut lags = Lags { common: stated.unwrap_or(0.0), own: Vec::new() };
     let mut without = WithoutLag::new(inputs, &lags);
     let moved = without.of(inputs);
     check(arm, &moved, options.cutoff.unwrap_or(CUTOFF))?;
-    let mut look = Look::new(arm, &moved, options, progress)?;
+    let mut pass = Pass::new(arm, &moved, options, progress)?;
     if stated.is_some() {
-        return Ok((look, lags, without));
+        return Ok((pass, lags, without));
     }
     let again = |step: Step<'_>| {
         let doing = format!("torques without their lag: {}", step.doing);
@@ -69,8 +69,8 @@ fn without_torque_lag(
     loop {
         let mut next = lags.clone();
         // First those of single recordings, which a lag of all would share with the others.
-        let Some(lagging) = Lagging::of(&look.last) else { break };
-        let own = if of_single < MOST_LAGS { lagging.own_lags(&look.last, &lags.own) } else { None };
+        let Some(lagging) = Lagging::of(&pass.last) else { break };
+        let own = if of_single < MOST_LAGS { lagging.own_lags(&pass.last, &lags.own) } else { None };
         let (removed, rule, of_these) = if let Some(own) = own {
             of_single += 1;
             let before = |at: usize| lags.own.get(at).copied().unwrap_or(0.0);
@@ -92,14 +92,14 @@ fn without_torque_lag(
         if check(arm, &next_moved, options.cutoff.unwrap_or(CUTOFF)).is_err() {
             break;
         }
-        let trace = std::mem::take(&mut look.last.study.trace);
-        look = Look::again(arm, &next_moved, options, (trace, removed, rule), &again)?;
+        let trace = std::mem::take(&mut pass.last.study.trace);
+        pass = Pass::again(arm, &next_moved, options, (trace, removed, rule), &again)?;
         (lags, without, found) = (next, recordings, of_these);
     }
     let of_all = found.filter(|_| lags.common != 0.0).map(|found| found.remark(lags.common));
     let of_single = remark_on_own(inputs, &own_lags_by_name(inputs, &lags));
-    look.last.study.data.motions.remarks.extend(of_all.into_iter().chain(of_single));
-    Ok((look, lags, without))
+    pass.last.study.data.motions.remarks.extend(of_all.into_iter().chain(of_single));
+    Ok((pass, lags, without))
 }
 
 /// The lags of single recordings by their names (s), without those that have none.

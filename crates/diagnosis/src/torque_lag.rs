@@ -82,7 +82,7 @@ pub fn note_on_short(table: &Table, resampled: &Resampled) -> Option<String> {
     })
 }
 
-/// The fit of a look with a lag of the torque of each joint in addition.
+/// The fit of a pass with a lag of the torque of each joint in addition.
 pub struct Lagging {
     /// The joints.
     joints: Vec<usize>,

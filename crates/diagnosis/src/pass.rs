@@ -1,4 +1,4 @@
-//! A look at the recordings through one filter, and a second look through a slower one where the first leaves residuals unexplained.
+//! A pass over the recordings through one filter, and a second pass through a slower one where the first leaves residuals unexplained.
 //!
 //! No model is right about the fast torque after an impact in a gear, or at the end of a spring. It hides the slower part of the same
 //! torque, which a model does explain, and which stands out with a slower filter.
@@ -23,15 +23,15 @@ use crate::thresholds::{
 use crate::trace::{Action, Trace};
 
 /// The final fit with one filter, and the conclusions.
-pub struct Look {
+pub struct Pass {
     /// The final fit.
     pub last: FinalFit,
     /// The conclusions from it.
     pub conclusion: Conclusion,
 }
 
-impl Look {
-    /// The look with the filter of `options`.
+impl Pass {
+    /// The pass with the filter of `options`.
     ///
     /// # Errors
     /// [`DiagnosisError`], if there is nothing to fit.
@@ -44,7 +44,7 @@ impl Look {
         Self::within(arm, inputs, options, (None, Trace::default()), progress)
     }
 
-    /// A look at recordings from which a lag of their torques was `removed`. It continues the trace of the look that showed the lag.
+    /// A pass over recordings from which a lag of their torques was `removed`. It continues the trace of the pass that showed the lag.
     ///
     /// # Errors
     /// [`DiagnosisError`], if there is nothing to fit.
@@ -59,7 +59,7 @@ impl Look {
         Self::within(arm, inputs, options, (None, trace), progress)
     }
 
-    /// A look that may name what is in `scope` (`None`: everything) and continues a trace.
+    /// A pass that may name what is in `scope` (`None`: everything) and continues a trace.
     fn within(
         arm: &Arm,
         inputs: &[Input<'_>],
@@ -81,7 +81,7 @@ impl Look {
         Ok(Self { last, conclusion })
     }
 
-    /// This look, or one through a slower filter that names what this one leaves unexplained, if the user states neither a filter nor
+    /// This pass, or one through a slower filter that names what this one leaves unexplained, if the user states neither a filter nor
     /// effects.
     ///
     /// # Errors
@@ -144,7 +144,7 @@ impl Look {
         self.conclusion.unexplained.iter().map(|open| open.joint.as_str())
     }
 
-    /// What another look may name.
+    /// What another pass may name.
     fn scope(&self) -> Scope {
         let joints = self.last.study.data.arm.joints().iter();
         let candidates = &self.last.study.candidates;
@@ -155,7 +155,7 @@ impl Look {
         }
     }
 
-    /// What this look names and leaves unexplained.
+    /// What this pass names and leaves unexplained.
     fn outcome(&self) -> Outcome<'_> {
         Outcome {
             findings: self.conclusion.findings.iter().map(|(finding, _)| finding).collect(),
@@ -165,7 +165,7 @@ impl Look {
     }
 }
 
-/// What a look names and leaves unexplained.
+/// What a pass names and leaves unexplained.
 struct Outcome<'a> {
     findings: Vec<&'a Finding>,
     unexplained: &'a [Unexplained],
@@ -178,8 +178,8 @@ impl Outcome<'_> {
         self.unexplained.iter().any(|open| open.joint == joint)
     }
 
-    /// The new name that is the reason for residuals that `first` leaves unexplained and this look does not, as a clause; `None` if there
-    /// is none, or if this look explains less elsewhere.
+    /// The new name that is the reason for residuals that `first` leaves unexplained and this pass does not, as a clause; `None` if there
+    /// is none, or if this pass explains less elsewhere.
     ///
     /// The name must be certain, and as large as a part of the largest of these residuals. The errors of their joints must fall. No
     /// other joint may be unexplained, and the certain names of `first` on joints that it explains must stay.
@@ -258,7 +258,7 @@ mod tests {
         is_taken_at(0.1, first, findings, unexplained)
     }
 
-    /// Whether a look is taken in which the error of the elbow falls from 0.4 to `error`.
+    /// Whether a pass is taken in which the error of the elbow falls from 0.4 to `error`.
     fn is_taken_at(error: f64, first: &[Finding], findings: &[Finding], unexplained: &[Unexplained]) -> bool {
         let first = Outcome {
             findings: first.iter().collect(),
@@ -270,14 +270,14 @@ mod tests {
     }
 
     #[test]
-    fn a_second_look_must_reduce_the_errors() {
+    fn a_second_pass_must_reduce_the_errors() {
         let gap = [named(&BACKLASH, 0.985, 0.2)];
         assert!(is_taken_at(0.2, &[], &gap, &[open("wrist")]));
         assert!(!is_taken_at(0.39, &[], &gap, &[open("wrist")]), "only hidden");
     }
 
     #[test]
-    fn a_second_look_needs_a_new_name_that_is_the_reason() {
+    fn a_second_pass_needs_a_new_name_that_is_the_reason() {
         assert!(is_taken(&[named(&BACKLASH, 0.985, 0.2)], &[open("wrist")]));
         assert!(!is_taken(&[], &[open("wrist")]), "without a name, the residual was only filtered");
         assert!(!is_taken(&[named(&BACKLASH, 0.985, 0.02)], &[open("wrist")]), "too small");
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_look_must_leave_less_unexplained() {
+    fn a_second_pass_must_leave_less_unexplained() {
         let gap = [named(&BACKLASH, 0.985, 0.2)];
         assert!(!is_taken(&gap, &[open("elbow"), open("wrist")]), "as much");
         assert!(!is_taken(&gap, &[open("shoulder")]), "another joint");
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_look_keeps_the_certain_names_of_explained_joints() {
+    fn a_second_pass_keeps_the_certain_names_of_explained_joints() {
         let gap = named(&BACKLASH, 0.985, 0.2);
         let on = |joint: &str| Finding { joint: Some(joint.to_owned()), ..gap.clone() };
         let both = [gap.clone(), on("shoulder")];
