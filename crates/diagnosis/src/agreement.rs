@@ -9,7 +9,7 @@ use crate::data::statistics::deviation;
 use crate::error::DiagnosisError;
 use crate::options::{Options, Wanted};
 use crate::regression::fit::Products;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::plan;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
@@ -30,7 +30,7 @@ pub struct Agreement {
     /// The half-power frequency of the low-pass filter (Hz).
     cutoff: f64,
     /// The strengths of the background.
-    strengths: Strengths,
+    strengths: PriorStrengths,
 }
 
 /// The agreement of all `inputs` that are not held out with `arm`, the effects `known` included. Effects that are physically

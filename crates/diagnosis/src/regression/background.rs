@@ -13,7 +13,7 @@ use effects::arm::INERTIAL_PARAMETER;
 use effects::background::{FRICTION_CURVE, GAIN as GAIN_LAW, LAG, OFFSET, OWN_FRICTION, OWN_LOAD};
 
 use crate::regression::bodies::{LeastBody, PER_LINK, Quadratic, physical, possible_part, prior_about};
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::thresholds::{FRICTION_PRIOR, GAIN_PRIOR, LAG_PRIOR, LEAST_LAGGING, NAMELESS_OFFSET};
 
 /// The prior of the background at strength one: the first columns of a table.
@@ -58,7 +58,7 @@ pub struct Background {
     /// The evidence that its strengths must bring (nats).
     pub cost: f64,
     /// Its strengths.
-    pub strengths: Strengths,
+    pub strengths: PriorStrengths,
     /// Whether it is the lag of the torques alone, so that the model is taken as exact.
     pub is_lag_alone: bool,
 }
@@ -187,7 +187,7 @@ impl Prior {
     }
 
     /// The background at `strengths`; `None` if no column has a strength.
-    pub fn at(&self, strengths: &Strengths) -> Option<Background> {
+    pub fn at(&self, strengths: &PriorStrengths) -> Option<Background> {
         let strength = |column: usize| match self.terms[column] {
             term if term.is(&OWN_LOAD) => 1.0,
             term if term.is(&LAG) => f64::from(u8::from(strengths.lag)),
@@ -261,15 +261,15 @@ mod tests {
 
     #[test]
     fn a_lag_is_a_background_of_its_own_unless_few_joints_move() {
-        let exact = Strengths::none(3);
+        let exact = PriorStrengths::none(3);
         assert!(prior(3).at(&exact).is_none());
-        let late = Strengths { lag: true, ..exact };
+        let late = PriorStrengths { lag: true, ..exact };
         let background = prior(3).at(&late).expect("there is a lag");
         assert_eq!((background.columns.len(), background.is_lag_alone), (1, true));
         assert!((background.precision[(0, 0)] * LAG_PRIOR.powi(2) - 1.0).abs() < 1e-12);
         assert!(prior(3).at(&late.without_lag()).is_none());
         assert!(prior(2).at(&late).is_none());
-        let wrong = Strengths { links: vec![0.1; 3], ..late };
+        let wrong = PriorStrengths { links: vec![0.1; 3], ..late };
         let background = prior(3).at(&wrong).expect("links differ");
         assert_eq!((background.columns.len(), background.is_lag_alone), (31, false));
     }

@@ -1,7 +1,7 @@
 //! The strengths of the background that the user states.
 
 use crate::options::Options;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::thresholds::GAIN_PRIOR;
 
 /// Strengths that the user states, so that they are not selected by evidence.
@@ -30,11 +30,11 @@ impl Stated {
     }
 
     /// The strengths at the beginning of the search.
-    pub fn first(self, links: usize) -> Strengths {
-        Strengths {
+    pub fn first(self, links: usize) -> PriorStrengths {
+        PriorStrengths {
             links: vec![self.links.unwrap_or(0.0); links],
             gain: self.gain.map_or(0.0, |gain| gain / GAIN_PRIOR),
-            ..Strengths::none(links)
+            ..PriorStrengths::none(links)
         }
     }
 
@@ -44,13 +44,13 @@ impl Stated {
     }
 
     /// `strengths` with less of one part each, as far as they agree with those stated.
-    pub fn weaker(self, strengths: &Strengths) -> impl Iterator<Item = Strengths> {
+    pub fn weaker(self, strengths: &PriorStrengths) -> impl Iterator<Item = PriorStrengths> {
         let weaker = strengths.weaker().into_iter();
         weaker.filter(move |strengths| self.allows(strengths))
     }
 
     /// Whether strengths agree with those stated.
-    pub fn allows(self, strengths: &Strengths) -> bool {
+    pub fn allows(self, strengths: &PriorStrengths) -> bool {
         let first = self.first(strengths.links.len());
         (self.links.is_none() || strengths.links == first.links)
             && (self.gain.is_none() || strengths.gain == first.gain)

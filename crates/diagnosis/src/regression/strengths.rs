@@ -10,7 +10,7 @@ use crate::thresholds::{
 
 /// The strengths of the parts of the background, as standard deviations; zero switches a part off.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Strengths {
+pub struct PriorStrengths {
     /// ρ of each link's inertial parameters.
     pub links: Vec<f64>,
     /// The least ρ of each link, whatever the evidence prefers: the URDF has a placeholder for the body of some links.
@@ -45,7 +45,7 @@ pub struct Strengths {
 /// The largest number of joints and recordings whose friction is made much different at once.
 const MOST_DIFFERENT: usize = 3;
 
-/// A part of the background that [`Strengths::weaker`] reduces.
+/// A part of the background that [`PriorStrengths::weaker`] reduces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The links' inertial parameters.
@@ -56,7 +56,7 @@ pub enum Part {
     Gain,
 }
 
-impl fmt::Display for Strengths {
+impl fmt::Display for PriorStrengths {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // A finer strength is a product of factors, with as many digits as it has.
         let links: Vec<String> = self.links.iter().map(|rho| ((rho * 1e3).round() / 1e3).to_string()).collect();
@@ -82,7 +82,7 @@ impl fmt::Display for Strengths {
     }
 }
 
-impl Strengths {
+impl PriorStrengths {
     /// No background: the nominal model.
     pub fn none(links: usize) -> Self {
         Self {
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn the_common_strength_may_change_while_one_link_stays_apart() {
-        let strengths = Strengths { links: vec![0.0, 1.0, 0.0], ..Strengths::none(3) };
+        let strengths = PriorStrengths { links: vec![0.0, 1.0, 0.0], ..PriorStrengths::none(3) };
         let neighbours = strengths.neighbours();
         let has = |links: [f64; 3]| neighbours.iter().any(|next| next.links == links);
         assert!(has([0.1, 1.0, 0.1]) && has([0.1; 3]));

@@ -16,7 +16,7 @@ use crate::data::motion::Motions;
 use crate::data::statistics::NORMAL_95;
 use crate::regression::background::{Background, LoadPrior, Prior};
 use crate::regression::bodies::PER_LINK;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::regression::table::Table;
 use crate::thresholds::{LEAST_LOAD, LEAST_OF_RECORDING, LEAST_OF_RESIDUAL, LOAD_SIZE};
 
@@ -44,7 +44,7 @@ impl OwnLoad {
         if dof < 2 || recordings < 2 {
             return None;
         }
-        let wide = Strengths { links: vec![1.0; dof], ..Strengths::none(dof) };
+        let wide = PriorStrengths { links: vec![1.0; dof], ..PriorStrengths::none(dof) };
         let background = prior.at(&wide)?;
         let mut found = Self::within(data, table, &background, None)?;
         for _ in 0..SPLITS {

@@ -15,7 +15,7 @@ use crate::regression::background::{Background, LoadPrior, Prior};
 use crate::regression::bodies::LeastBody;
 use crate::regression::fit::Products;
 use crate::regression::stated::Stated;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::own_load::OwnLoad;
@@ -61,9 +61,9 @@ pub struct Study {
     /// The prior of the background.
     prior: Prior,
     /// The strengths of the background, selected by evidence.
-    pub strengths: Strengths,
+    pub strengths: PriorStrengths,
     /// The strengths that the evidence prefers, if the held-out recordings reduced them.
-    pub preferred: Option<Strengths>,
+    pub preferred: Option<PriorStrengths>,
     /// The strengths that the user states.
     pub stated: Stated,
     /// The thresholds.
@@ -247,7 +247,7 @@ impl Study {
             simulated_along: vec![None; motions.dof],
             carries: false,
             moving: Moving::Steadily,
-            strengths: Strengths { least, ..stated.first(arm.dof()) },
+            strengths: PriorStrengths { least, ..stated.first(arm.dof()) },
             preferred: None,
             stated,
             thresholds,

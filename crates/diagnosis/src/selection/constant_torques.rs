@@ -8,7 +8,7 @@ use effects::friction::FRICTION_ASYMMETRY;
 use effects::sensor::TORQUE_OFFSET;
 use effects::{Effect, Quantity, Term};
 
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::report::Parameter;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
@@ -30,11 +30,11 @@ pub fn names(study: &Study, candidate: usize) -> Option<usize> {
 pub fn leave_to_background(study: &mut Study, mut selected: Selection) -> Selection {
     loop {
         let named: Vec<usize> = selected.set.iter().copied().filter(|&c| names(study, c).is_some()).collect();
-        let mut best: Option<(Strengths, Selection)> = None;
+        let mut best: Option<(PriorStrengths, Selection)> = None;
         for &member in &named {
             for offset in OFFSET_STRENGTHS.into_iter().filter(|&offset| offset > 0.0) {
                 let others = selected.others(member);
-                let strengths = Strengths {
+                let strengths = PriorStrengths {
                     offset,
                     named_offsets: others.iter().filter_map(|&c| names(study, c)).collect(),
                     ..study.strengths.clone()

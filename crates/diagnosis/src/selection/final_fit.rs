@@ -2,7 +2,7 @@
 
 use effects::sensor::{TORQUE_OFFSET, TORQUE_SCALE};
 
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::report::JointFit;
 use crate::search::problem::{IMPOSSIBLE, Problem, Selection};
 use crate::search::study::Study;
@@ -247,7 +247,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
             return Some(("links that are wrong explain nearly as much in its place", true));
         }
         // If most links agree with the URDF, one wrong link is an unlikely explanation. A URDF with placeholders is wrong.
-        let preferred = study.preferred.as_ref().map_or(0.0, Strengths::common);
+        let preferred = study.preferred.as_ref().map_or(0.0, PriorStrengths::common);
         let is_wrong = study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders();
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
         let size = judged.named.fit.coefficient(study.candidates[member.candidate].columns[0]).abs();
@@ -327,7 +327,7 @@ fn better_outside(
     selected: &Selection,
     moving: &[usize],
     resting: &[usize],
-) -> Option<(Strengths, Selection)> {
+) -> Option<(PriorStrengths, Selection)> {
     let loss = |selected: &Selection| {
         let of = |joint: usize| {
             let fit = fit_of(study, selected, joint);

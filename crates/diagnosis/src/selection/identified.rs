@@ -2,7 +2,7 @@
 
 use effects::OMITTED_BY_MOST;
 
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::regression::table::Moving;
 use crate::search::study::Study;
 use crate::selection::predict::errors_with;
@@ -13,7 +13,7 @@ use crate::thresholds::FREE_INERTIALS;
 /// reversals. `study` is that before the search, with the columns about the nominal arm.
 pub fn identified(study: &Study) -> Vec<Option<f64>> {
     let dof = study.data.arm.dof();
-    let strengths = Strengths { links: vec![FREE_INERTIALS; dof], ..Strengths::none(dof) };
+    let strengths = PriorStrengths { links: vec![FREE_INERTIALS; dof], ..PriorStrengths::none(dof) };
     let is_part = |&candidate: &usize| {
         let hypothesis = study.candidates[candidate].hypothesis;
         study.always_acts(candidate) && OMITTED_BY_MOST.iter().any(|&kind| hypothesis.is(kind))

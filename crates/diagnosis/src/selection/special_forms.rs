@@ -5,7 +5,7 @@ use effects::Acts;
 use effects::drive::ROTOR_INERTIA;
 use rayon::prelude::*;
 
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::candidate::Candidate;
 use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
@@ -16,10 +16,10 @@ use crate::thresholds::{MOST_SPECIAL_FORMS, NEARLY_AS_LIKELY, NEARLY_NATS, SPECI
 /// much, then those that are as likely beside a smaller correction of the links, or explain as much beside it. Also the least score of
 /// one of the latter beyond that of `selected`, the final fit (nats); infinite without one.
 pub fn special_forms(study: &Study, selected: &Selection) -> (f64, Vec<Rival>) {
-    let links = |strengths: &Strengths| strengths.links.clone();
+    let links = |strengths: &PriorStrengths| strengths.links.clone();
     let is_smaller =
-        |strengths: &Strengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
-    let smaller: Vec<Strengths> = study.strengths.weaker().into_iter().filter(is_smaller).collect();
+        |strengths: &PriorStrengths| links(strengths) != links(&study.strengths) && study.stated.allows(strengths);
+    let smaller: Vec<PriorStrengths> = study.strengths.weaker().into_iter().filter(is_smaller).collect();
     let mut scores: Vec<(f64, Rival)> = smaller
         .into_par_iter()
         .flat_map_iter(|strengths| {

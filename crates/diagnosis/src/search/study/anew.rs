@@ -16,7 +16,7 @@ use crate::regression::background::Prior;
 use crate::regression::bodies::PER_LINK;
 use crate::regression::columns::values;
 use crate::regression::fit::{Fit, Products};
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis};
 use crate::search::problem::Selection;
@@ -43,7 +43,7 @@ impl Study {
         columns: &[usize],
         more: Vec<Term>,
         moving: Moving,
-        strengths: &Strengths,
+        strengths: &PriorStrengths,
     ) -> (Table, Products) {
         let Data { motions, rigid, scales, .. } = &self.data;
         let background = 0..self.prior.terms().len();
@@ -75,7 +75,7 @@ impl Study {
     /// The same ones with other strengths of the background.
     pub fn table_and_fit_at(
         &self,
-        strengths: &Strengths,
+        strengths: &PriorStrengths,
         columns: &[usize],
         more: Vec<Term>,
         weights: &[f64],
@@ -324,7 +324,8 @@ impl Study {
     /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
-        self.strengths = Strengths { least: self.strengths.least.clone(), ..self.stated.first(self.data.arm.dof()) };
+        self.strengths =
+            PriorStrengths { least: self.strengths.least.clone(), ..self.stated.first(self.data.arm.dof()) };
         let products = self.training_products();
         let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
         self.about(&nothing.fit, &[], true);

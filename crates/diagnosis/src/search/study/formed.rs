@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Study;
 use crate::regression::fit::Products;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 
 /// The number of backgrounds whose products are stored.
 const KEPT: usize = 64;
@@ -23,7 +23,7 @@ struct List {
     /// Whether they have all columns of the present table.
     is_whole: [bool; 2],
     /// With the backgrounds that were requested last.
-    with_background: Vec<(bool, Strengths, Products)>,
+    with_background: Vec<(bool, PriorStrengths, Products)>,
 }
 
 impl List {
@@ -55,14 +55,14 @@ impl Study {
     }
 
     /// Inner products over the training recordings, with a background of other strengths.
-    pub fn products_at(&self, strengths: &Strengths) -> Products {
+    pub fn products_at(&self, strengths: &PriorStrengths) -> Products {
         self.formed(false, strengths)
     }
 
-    fn formed(&self, held_out: bool, strengths: &Strengths) -> Products {
+    fn formed(&self, held_out: bool, strengths: &PriorStrengths) -> Products {
         let known = |list: &mut List| {
             list.renew(self.table.identity(), self.prior.identity());
-            let is_same = |(held, with, _): &&(bool, Strengths, Products)| (*held, with) == (held_out, strengths);
+            let is_same = |(held, with, _): &&(bool, PriorStrengths, Products)| (*held, with) == (held_out, strengths);
             list.with_background.iter().find(is_same).map(|(.., products)| products.clone())
         };
         if let Some(products) = self.stored(known) {

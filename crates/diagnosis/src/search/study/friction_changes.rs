@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use effects::Acts;
 
 use super::Study;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::problem::Selection;
 
 /// The strengths of friction that differs between the recordings beside the one that changed: none, or less than without it.
@@ -41,7 +41,7 @@ impl Study {
         };
         let of_sign = since.iter().filter_map(|&c| if is_more(c) { Some(c) } else { until(c) });
         let set: Vec<usize> = others.into_iter().chain(of_sign).collect();
-        let beside = STRENGTHS.map(|friction| Strengths { friction, ..self.strengths.clone() });
+        let beside = STRENGTHS.map(|friction| PriorStrengths { friction, ..self.strengths.clone() });
         let trials = beside.map(|strengths| {
             let products = self.products_at(&strengths);
             let problem = self.problem(&products);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::Study;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::problem::Selection;
 use crate::thresholds::GAIN_STRENGTHS;
 
@@ -20,7 +20,7 @@ impl Study {
         let without =
             link.map_or_else(|| self.strengths.with_exact_links(), |link| self.strengths.with_link_as_most(link));
         let loss = |gain: f64| {
-            let strengths = Strengths { gain, ..without.clone() };
+            let strengths = PriorStrengths { gain, ..without.clone() };
             let products = self.products_at(&strengths);
             let problem = self.problem(&products);
             let next = problem.choose(selected.set.clone(), &selected.fit.weights);

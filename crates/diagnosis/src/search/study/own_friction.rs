@@ -6,13 +6,13 @@ use effects::background::OWN_FRICTION;
 use super::Study;
 use crate::data::statistics::{median, rms};
 use crate::regression::fit::Fit;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::problem::Selection;
 use crate::thresholds::{FRICTION_BETWEEN, FRICTION_PRIOR, SAME_FRICTION};
 
 impl Study {
     /// The strengths that differ from the present ones in one link, or in the friction of one joint in some recordings.
-    pub(super) fn in_one_place(&self, selected: &Selection) -> Vec<Strengths> {
+    pub(super) fn in_one_place(&self, selected: &Selection) -> Vec<PriorStrengths> {
         let relative = |joint: usize| {
             let levels = self.own_levels(&selected.fit, joint);
             // Of two recordings, none is the usual one, and what changed since those from before is an effect.
@@ -37,9 +37,9 @@ impl Study {
     /// The strengths with which the friction of some joints differs less between recordings than that of others. With one strength for all,
     /// friction that differs on one joint would let what each recording has of its own take the place of the friction that another joint
     /// always has.
-    fn with_friction_between(&self, selected: &Selection) -> Vec<Strengths> {
+    fn with_friction_between(&self, selected: &Selection) -> Vec<PriorStrengths> {
         let now = &self.strengths;
-        let mut list: Vec<Strengths> = Vec::new();
+        let mut list: Vec<PriorStrengths> = Vec::new();
         if now.friction == 0.0 {
             return list;
         }
@@ -57,7 +57,7 @@ impl Study {
         };
         let own: Vec<Option<f64>> = (0..self.data.motions.dof).map(own).collect();
         let mut add = |between: Vec<f64>| {
-            let next = Strengths { between, ..now.clone() };
+            let next = PriorStrengths { between, ..now.clone() };
             if next != *now && !list.contains(&next) {
                 list.push(next);
             }

@@ -8,7 +8,7 @@ use super::Study;
 use crate::data::motion::{Chunk, Motions};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
-use crate::regression::strengths::{Part, Strengths};
+use crate::regression::strengths::{Part, PriorStrengths};
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
     AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, HOPELESS_EXCHANGE, LINK_STRENGTHS, LONGEST_SHORT_LAG,
@@ -59,7 +59,7 @@ impl Study {
     }
 
     /// The products and the fit of `selected` beside a background of these strengths.
-    pub(super) fn beside(&self, selected: &Selection, strengths: &Strengths) -> (Products, Selection) {
+    pub(super) fn beside(&self, selected: &Selection, strengths: &PriorStrengths) -> (Products, Selection) {
         let products = self.products_at(strengths);
         let next = self.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
         (products, next)
@@ -76,7 +76,7 @@ impl Study {
     /// present ones: alternatives of an effect that may be a part of the background. Each has its link and its fit.
     pub fn in_the_background(&self, set: &[usize], near: &Selection) -> Vec<(Option<usize>, Selection)> {
         let common = self.strengths.common();
-        let stronger = |strengths: &Strengths| {
+        let stronger = |strengths: &PriorStrengths| {
             let pairs = strengths.links.iter().zip(&self.strengths.links);
             strengths.friction == self.strengths.friction
                 && strengths.varied == self.strengths.varied
@@ -88,7 +88,7 @@ impl Study {
                 && pairs.clone().any(|(new, old)| new > old)
         };
         let all = self.strengths.neighbours().into_iter().chain(self.strengths.with_other_links());
-        let trials: Vec<Strengths> = all.filter(stronger).filter(|trial| self.stated.allows(trial)).collect();
+        let trials: Vec<PriorStrengths> = all.filter(stronger).filter(|trial| self.stated.allows(trial)).collect();
         trials
             .into_par_iter()
             .map(|strengths| {
@@ -109,7 +109,7 @@ impl Study {
             let is_wanted = |link: usize| of_all || links.contains(&Some(link));
             let links = self.strengths.links.iter().enumerate();
             let links = links.map(|(link, &own)| if is_wanted(link) { own.max(rho) } else { own });
-            Strengths { links: links.collect(), ..self.strengths.clone() }
+            PriorStrengths { links: links.collect(), ..self.strengths.clone() }
         };
         let (strengths, next) = self.strengthened(selected, strengths.iter().map(trial).collect())?;
         self.strengths = strengths;
@@ -119,7 +119,7 @@ impl Study {
     /// The strongest background in which all links differ from the URDF and which is nearly as likely as that of `selected` by its score,
     /// and `selected` fitted again beside it; for a payload on an arm of few joints, the most likely one. `None` if there is none, if all of the links differ already, if none do
     /// and no payload is selected, whose mass depends on them, or if the user states the strengths.
-    pub fn with_all_links(&self, selected: &Selection) -> Option<(Strengths, Selection)> {
+    pub fn with_all_links(&self, selected: &Selection) -> Option<(PriorStrengths, Selection)> {
         let links = &self.strengths.links;
         let has_payload = selected.set.iter().any(|&c| self.is_payload(c));
         let are_few = has_payload && links.len() <= FEW_JOINTS;
@@ -202,10 +202,10 @@ impl Study {
     }
 
     /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
-    fn exchanged(&self, selected: &Selection, allowed: &[usize]) -> Option<(Strengths, Selection)> {
-        let mut best: Option<(Strengths, Selection)> = None;
+    fn exchanged(&self, selected: &Selection, allowed: &[usize]) -> Option<(PriorStrengths, Selection)> {
+        let mut best: Option<(PriorStrengths, Selection)> = None;
         let mut hopeless: Vec<Part> = Vec::new();
-        let weaker: Vec<Strengths> = self.stated.weaker(&self.strengths).collect();
+        let weaker: Vec<PriorStrengths> = self.stated.weaker(&self.strengths).collect();
         // The strongest first: if effects cannot replace a small part of the background, they cannot replace a larger one.
         for strengths in weaker.into_iter().rev() {
             let part = self.strengths.part_that_differs(&strengths);
@@ -229,7 +229,7 @@ impl Study {
     /// `selected` with a background of other `strengths`, and with those of the candidates `allowed` that gain most: as many as make it
     /// better than `selected`, or a few, unless it is too far from that. `None` if a member of `selected` becomes impossible: it would be
     /// removed later, and without it the smaller background may be far worse.
-    fn with_few_more(&self, strengths: &Strengths, selected: &Selection, allowed: &[usize]) -> Option<Selection> {
+    fn with_few_more(&self, strengths: &PriorStrengths, selected: &Selection, allowed: &[usize]) -> Option<Selection> {
         let products = self.products_at(strengths);
         let problem = self.problem(&products);
         let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
@@ -344,8 +344,8 @@ impl Study {
     }
 
     /// The best of the strengths `others`, with `selected` fitted again, if they are better.
-    fn strengthened(&self, selected: &Selection, others: Vec<Strengths>) -> Option<(Strengths, Selection)> {
-        let trials: Vec<(Strengths, Selection)> = others
+    fn strengthened(&self, selected: &Selection, others: Vec<PriorStrengths>) -> Option<(PriorStrengths, Selection)> {
+        let trials: Vec<(PriorStrengths, Selection)> = others
             .into_par_iter()
             .filter(|strengths| self.stated.allows(strengths))
             .map(|strengths| {
@@ -370,7 +370,11 @@ impl Study {
 
     /// The fit of `selected` beside a background of these strengths, from which those torque constants are left out, the farthest one
     /// first, that would be wrong by more than any is.
-    fn with_possible_constants(&self, mut strengths: Strengths, mut selected: Selection) -> (Strengths, Selection) {
+    fn with_possible_constants(
+        &self,
+        mut strengths: PriorStrengths,
+        mut selected: Selection,
+    ) -> (PriorStrengths, Selection) {
         let most = MOST_CONSTANT.max(MOST_DEVIATIONS * self.stated.torque_accuracy());
         loop {
             let products = self.products_at(&strengths);

@@ -8,7 +8,7 @@
 use effects::arm::{INERTIAL_PARAMETERS, LINK_INERTIAL_ERROR};
 
 use crate::regression::bodies::PER_LINK;
-use crate::regression::strengths::Strengths;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::{Resampled, resample};
@@ -74,7 +74,7 @@ fn explains_a_part(study: &Study, selected: &Selection) -> bool {
 
 /// A fit with a missing body.
 struct Instead {
-    strengths: Strengths,
+    strengths: PriorStrengths,
     next: Selection,
     /// Why it takes the place of the fit without the body.
     rule: &'static str,
@@ -101,14 +101,14 @@ fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
 fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: usize) -> Option<Instead> {
     let others: Vec<usize> = selected.set.iter().copied().filter(|&c| Some(c) != lighter).collect();
     let with = [others.as_slice(), &[body]].concat();
-    let fit = |strengths: &Strengths, set: &[usize]| {
+    let fit = |strengths: &PriorStrengths, set: &[usize]| {
         let products = study.products_at(strengths);
         let problem = study.problem(&products);
         let next = problem.reweighted(problem.choose(set.to_vec(), &selected.fit.weights));
         let is_possible = !set.contains(&body) || problem.is_possible(body, &next.fit);
         (next, is_possible)
     };
-    let exact = Strengths { links: vec![0.0; study.data.arm.dof()], ..study.strengths.clone() };
+    let exact = PriorStrengths { links: vec![0.0; study.data.arm.dof()], ..study.strengths.clone() };
     let (bare, _) = fit(&exact, &others);
     let (alone, _) = fit(&exact, &with);
     let explained = bare.score - selected.score;
