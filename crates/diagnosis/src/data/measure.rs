@@ -94,15 +94,15 @@ impl Inertial {
     fn explained_by_acceleration(&self) -> f64 {
         let inner = |i: usize, k: usize| -> f64 { self.0[i].iter().zip(&self.0[k]).map(|(a, b)| a * b).sum() };
         let whole: [[f64; SIGNALS]; SIGNALS] = std::array::from_fn(|i| std::array::from_fn(|k| inner(i, k)));
-        let mut left = whole;
+        let mut residual = whole;
         for signal in 0..LINKS {
-            eliminate(&mut left, &whole, signal);
+            eliminate(&mut residual, &whole, signal);
         }
-        let before = left[MEASURED][MEASURED];
+        let before = residual[MEASURED][MEASURED];
         // Either alone, and both.
         let sets: [&[usize]; 3] = [&[LINKS], &[OWN], &[LINKS, OWN]];
         let explained = sets.map(|set| {
-            let mut rest = left;
+            let mut rest = residual;
             let mut is_positive = true;
             for &signal in set {
                 is_positive &= rest[signal][MEASURED] >= 0.0;

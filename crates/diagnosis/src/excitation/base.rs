@@ -210,18 +210,18 @@ fn independent(rows: &DMatrix<f64>) -> (Vec<usize>, Vec<f64>) {
             continue;
         }
         let whole: DVector<f64> = rows.column(column).into_owned();
-        let mut left = whole.clone();
+        let mut residual = whole.clone();
         // Two passes of orthogonalisation are sufficient (Kahan).
         for _ in 0..2 {
             for unit in &basis {
-                let part = unit.dot(&left);
-                left.axpy(-part, unit, 1.0);
+                let part = unit.dot(&residual);
+                residual.axpy(-part, unit, 1.0);
             }
         }
-        if left.norm() > DEPENDENT * whole.norm() {
+        if residual.norm() > DEPENDENT * whole.norm() {
             columns.push(column);
             scales.push(1.0 / size);
-            basis.push(left.normalize());
+            basis.push(residual.normalize());
         }
     }
     (columns, scales)

@@ -72,13 +72,13 @@ mod tests {
         let beside = held.rss_beside(&table, (&fit, &rss), &corrections)[0];
 
         let design = DMatrix::from_fn(y.len(), 2, |row, column| x[column][row]);
-        let left = DVector::from_fn(y.len(), |row, _| y[row] - x[0][row] - 0.5 * x[1][row]);
-        let variance = (left.norm_squared() / y.len() as f64 + 1e-4) / held.evidence_per_row(0);
+        let residual = DVector::from_fn(y.len(), |row, _| y[row] - x[0][row] - 0.5 * x[1][row]);
+        let variance = (residual.norm_squared() / y.len() as f64 + 1e-4) / held.evidence_per_row(0);
         let ridge = DMatrix::from_diagonal(&DVector::from_iterator(2, deviations.map(|s| variance / (s * s))));
-        let right = design.transpose() * &left;
+        let right = design.transpose() * &residual;
         let normal = design.transpose() * &design + ridge;
         let explained = right.dot(&normal.cholesky().expect("it is positive definite").solve(&right));
-        assert!((rss[0] - left.norm_squared()).abs() < 1e-9 * rss[0], "{rss:?}");
+        assert!((rss[0] - residual.norm_squared()).abs() < 1e-9 * rss[0], "{rss:?}");
         assert!(
             (beside - (rss[0] - explained)).abs() < 1e-9 * rss[0],
             "{beside} instead of {} of {rss:?}",

@@ -70,14 +70,14 @@ impl<'a> Columns<'a> {
             (_, true) => (self.inertials, variances[1]),
             _ => return 0.0,
         };
-        let (mut left, mut load) = (self.torque[row] - solution.common[self.drive + DRIVE - 1], 0.0);
+        let (mut residual, mut load) = (self.torque[row] - solution.common[self.drive + DRIVE - 1], 0.0);
         for (&unknown, column) in self.unknowns.iter().zip(&self.columns).take(used) {
-            left -= solution.common[unknown] * column[row];
+            residual -= solution.common[unknown] * column[row];
             if (solution.last..solution.last + LOAD).contains(&unknown) {
                 load += solution.load[unknown - solution.last] * column[row];
             }
         }
-        (left.powi(2) - (left - load).powi(2)) / variance
+        (residual.powi(2) - (residual - load).powi(2)) / variance
     }
 }
 
