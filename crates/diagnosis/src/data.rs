@@ -105,7 +105,7 @@ impl Data {
         let mut motions = cutoff::filtered(inputs, options.cutoff, arm);
         let measured = on_rows(&motions, |_, chunk, joint| chunk.tau[joint].clone());
         let torque = measure::deviations(&motions);
-        let known::TakenOff { mut recorded, dry } = known.take_off(&mut motions);
+        let known::Subtracted { mut recorded, dry } = known.subtract(&mut motions);
         let offset = vec![0.0; arm.dof()];
         let nominal = arm.inertial_parameters();
         let by_model = reading == Reading::Settled;
@@ -117,7 +117,7 @@ impl Data {
         let rigid: Vec<rigid::Rigid> =
             chunks.map(|chunk| rigid::Rigid::with(arm, &nominal, &offset, chunk, needed)).collect();
         let mut scales = measure::scales(&motions, torque);
-        known.take_off_commanded(&mut motions, &recorded, &rigid, &scales);
+        known.subtract_commanded(&mut motions, &recorded, &rigid, &scales);
         for (chunk, recorded) in motions.chunks.iter_mut().zip(&recorded) {
             let joints = recorded.iter().zip(&chunk.tau);
             let minus =

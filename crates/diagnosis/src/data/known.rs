@@ -19,7 +19,7 @@ pub struct Known {
 
 /// What was subtracted, each `[chunk][joint][tick]`.
 #[derive(Default)]
-pub struct TakenOff {
+pub struct Subtracted {
     /// The torques as they were recorded (N m or N); empty if no effect is known.
     pub recorded: Vec<Vec<Vec<f64>>>,
     /// Known dry friction, if there is any: what was subtracted beyond the torque that is the same in both directions, and the
@@ -43,9 +43,9 @@ impl Known {
     }
 
     /// Subtracts known effects from the torques, and corrects the positions for known encoder offsets.
-    pub fn take_off(&self, motions: &mut Motions) -> TakenOff {
+    pub fn subtract(&self, motions: &mut Motions) -> Subtracted {
         let Some(model) = &self.model else {
-            return TakenOff::default();
+            return Subtracted::default();
         };
         let recorded = motions.chunks.iter().map(|chunk| chunk.tau.clone()).collect();
         let has_dry = !model.machine().dry.is_empty();
@@ -81,12 +81,12 @@ impl Known {
                 }
             }
         }
-        TakenOff { recorded, dry: has_dry.then_some(dry) }
+        Subtracted { recorded, dry: has_dry.then_some(dry) }
     }
 
     /// Subtracts the known effects that are functions of the commanded torque, which is `recorded` (`[chunk][joint][tick]`) where any
     /// effect is known. Each acts on what the one before it leaves of the commanded torque. `rigid` is the arm along `motions`.
-    pub fn take_off_commanded(
+    pub fn subtract_commanded(
         &self,
         motions: &mut Motions,
         recorded: &[Vec<Vec<f64>>],
