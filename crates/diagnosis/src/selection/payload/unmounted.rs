@@ -33,7 +33,7 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     // About the last link's body without the tool, the quadratic prior is smallest between that body and the URDF's. Beside the
     // missing body, it would leave a part of the tool to the link.
     let prior = study.set_bodies_but_the_last(&judged.named.fit);
-    let Some(Instead { strengths, next, rule }) = instead(study, &judged.named, lighter, body) else {
+    let Some(MissingBodyFit { strengths, next, rule }) = missing_body_fit(study, &judged.named, lighter, body) else {
         study.set_prior(prior);
         return None;
     };
@@ -73,7 +73,7 @@ fn explains_a_part(study: &Study, selected: &Selection) -> bool {
 }
 
 /// A fit with a missing body.
-struct Instead {
+struct MissingBodyFit {
     strengths: PriorStrengths,
     next: Selection,
     /// Why it takes the place of the fit without the body.
@@ -98,7 +98,12 @@ fn lighter_last_link(study: &Study, selected: &Selection) -> Option<usize> {
 ///
 /// Scores are compared each with the prior about its own bodies. The determinants of the two priors differ by up to 20 nats in
 /// favour of `selected` where the last link loses nine tenths of its mass.
-fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: usize) -> Option<Instead> {
+fn missing_body_fit(
+    study: &Study,
+    selected: &Selection,
+    lighter: Option<usize>,
+    body: usize,
+) -> Option<MissingBodyFit> {
     let others: Vec<usize> = selected.set.iter().copied().filter(|&c| Some(c) != lighter).collect();
     let with = [others.as_slice(), &[body]].concat();
     let fit = |strengths: &PriorStrengths, set: &[usize]| {
@@ -140,5 +145,5 @@ fn instead(study: &Study, selected: &Selection, lighter: Option<usize>, body: us
             return None;
         }
     }
-    Some(Instead { strengths, next, rule })
+    Some(MissingBodyFit { strengths, next, rule })
 }
