@@ -24,7 +24,7 @@ pub fn onsets(
     }
     let mut rows = table.rows_of(|recording| data.fitted[recording]);
     rows.sort_by(|&a, &b| times[b].total_cmp(&times[a]));
-    let past = Past { table, weights, times, residual, rows };
+    let reversed = ReversedResidual { table, weights, times, residual, rows };
     let dof = table.dof();
     let mut kinds: Vec<(Kind, SetsIn)> = Kind::all().filter_map(|kind| Some((kind, kind.spec().sets_in?))).collect();
     kinds.sort_by_key(|(_, form)| form.turn);
@@ -38,7 +38,7 @@ pub fn onsets(
         .flat_map_iter(|(joint, kind, form)| {
             let forms = (form.forms)(joint.unwrap_or(0));
             let joints = joint.map_or_else(|| all.clone(), |joint| vec![joint]);
-            let from = past.best(&joints, &forms[0][..form.looked_for_with]);
+            let from = reversed.best(&joints, &forms[0][..form.looked_for_with]);
             let hypothesis = Hypothesis { kind, other: None };
             let since = |from: f64| {
                 let candidate =
@@ -51,7 +51,7 @@ pub fn onsets(
 }
 
 /// The residual of the training recordings, the latest row first.
-struct Past<'a> {
+struct ReversedResidual<'a> {
     table: &'a Table,
     weights: &'a [f64],
     times: &'a [f64],
@@ -59,7 +59,7 @@ struct Past<'a> {
     rows: Vec<usize>,
 }
 
-impl Past<'_> {
+impl ReversedResidual<'_> {
     /// The onset from which the columns `what` explain most of the residual of `joints` on their moving rows.
     fn best(&self, joints: &[usize], what: &[Term]) -> Option<f64> {
         let (table, times) = (self.table, self.times);
