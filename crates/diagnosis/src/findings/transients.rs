@@ -28,7 +28,7 @@ pub struct Transients {
 
 /// A transient that one force on the tool explains.
 #[derive(Clone, Debug)]
-struct Push {
+struct TransientForce {
     /// Start and end (s).
     window: [f64; 2],
     /// The index of its recording.
@@ -83,7 +83,7 @@ pub fn search(
     let windows = scan::contacts(table, &times, residual, &weights, force, &held, SEARCHED_TRANSIENTS);
     let settled = (0..data.motions.dof).map(|joint| settled(data, table, joint)).collect();
     let residuals = Residuals { data, table, force, residual, times, weights, settled };
-    let mut pushes: Vec<Push> = Vec::new();
+    let mut forces: Vec<TransientForce> = Vec::new();
     let is_felt = |powers: &[f64]| {
         let felt = powers.iter().filter(|power| power.sqrt() > ABOVE_USUAL).count();
         felt >= data.motions.dof.min(LEAST_PUSHED)
@@ -104,7 +104,7 @@ pub fn search(
         let (force, explained) = residuals.force((from, to));
         let is_early = data.motions.is_at_a_beginning(recording, to);
         if explained > ONE_FORCE && !is_contact_named && !is_early {
-            pushes.push(Push { window: [from, to], source: recording, force, explained });
+            forces.push(TransientForce { window: [from, to], source: recording, force, explained });
         } else {
             // The joint on which the transient exceeds the usual residual most.
             let window = (from, to);
@@ -122,11 +122,11 @@ pub fn search(
         }
     }
     // Transients that recur, also where joints start or stop, are an error of the model and not contacts.
-    let apart = pushes.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>();
+    let apart = forces.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>();
     if while_moving.max(apart) > MOST_TRANSIENTS {
         return Transients::default();
     }
-    transients.contact = residuals.contact(&pushes);
+    transients.contact = residuals.contact(&forces);
     for (_, windows) in transients.unexplained.values_mut() {
         windows.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
     }
@@ -240,12 +240,12 @@ impl Residuals<'_> {
     }
 
     /// All contacts as one finding, with the parameters of the strongest.
-    fn contact(&self, pushes: &[Push]) -> Option<Finding> {
+    fn contact(&self, forces: &[TransientForce]) -> Option<Finding> {
         let data = self.data;
-        let strongest = pushes.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
-        let Push { window: [from, to], source, force, explained } = strongest.clone();
+        let strongest = forces.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
+        let TransientForce { window: [from, to], source, force, explained } = strongest.clone();
         let same: Vec<[f64; 2]> = {
-            let mut list: Vec<[f64; 2]> = pushes
+            let mut list: Vec<[f64; 2]> = forces
                 .iter()
                 .filter(|push| push.source == source)
                 .map(|push| push.window.map(|time| data.motions.own_time(source, time)))
