@@ -47,7 +47,7 @@ impl Visibility {
 }
 
 /// The least detectable size of a linear effect.
-pub struct Least {
+pub struct DetectableSize {
     /// Its share of the joint's torque.
     pub share: f64,
     /// The size; `None` if no robot can have it.
@@ -55,7 +55,7 @@ pub struct Least {
 }
 
 /// The least detectable size of `candidate`, whose `column` is as visible as `visibility` tells. `None` if its size is not a coefficient.
-pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: &Visibility) -> Option<Least> {
+pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: &Visibility) -> Option<DetectableSize> {
     let Detectability::Linear { is_of_first, is_of_all_torque, .. } = candidate.hypothesis.spec().detectability else {
         return None;
     };
@@ -67,7 +67,7 @@ pub fn least(last: &FinalFit, candidate: &Candidate, column: usize, visibility: 
         || is_beyond_a_factor(candidate, size)
         || is_beyond_physics(least, column, candidate, &study.table, fit, &study.data.arm);
     let size = Some(size).filter(|size| !is_beyond && size.is_finite());
-    Some(Least { share, size })
+    Some(DetectableSize { share, size })
 }
 
 /// Whether the main parameter of `candidate` is a factor, and `size` so far from one that the factor may be zero.
