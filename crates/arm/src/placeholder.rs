@@ -8,11 +8,10 @@ use crate::model::Arm;
 
 /// The length of an arm below which its links are not compared with it (m).
 const LEAST_REACH: f64 = 0.05;
-/// The radius of gyration, over the arm's length, beyond which a body with three equal moments of inertia is a placeholder.
+/// The radius of gyration, over the arm's length, beyond which three equal moments of inertia are a placeholder.
 const LARGE: f64 = 0.25;
-/// The difference of the moments of inertia, over the largest one, up to which they count as equal: bodies that are fixed to a link are
-/// added to it.
-const NEARLY_EQUAL: f64 = 0.05;
+/// The relative difference of moments up to which they are the same number.
+const SAME: f64 = 1e-6;
 /// The least radius of gyration of a body that is taken in the place of a placeholder (m).
 const LEAST_RADIUS: f64 = 0.04;
 
@@ -55,23 +54,30 @@ impl Arm {
         lengths.filter_map(placeholder).collect()
     }
 
-    /// The bodies for links whose moments of inertia are those of no body there, with the links as indices into [`Self::joints`]: a
-    /// radius of gyration larger than the whole arm, or three equal moments that are large for the arm, such as 1 kg m² on every link. A
-    /// body has the URDF's mass and centre of mass, and the radius of gyration of a rod as long as the link.
+    /// The bodies for links whose moments of inertia are a placeholder, with the links as indices into [`Self::joints`]: all three have one
+    /// number that another link has, too, such as 1 kg m², and the radius of gyration is large for the arm. Large moments that differ may be
+    /// those of drives. A body has the URDF's mass and centre of mass, and the radius of gyration of a rod as long as the link.
     pub fn bodies_for_placeholders(&self) -> Vec<(usize, Inertia)> {
         let reach = self.reach();
+        let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+        let one_moment = |joint: &Joint| {
+            let moments = joint.inertia.tensor.symmetric_eigenvalues();
+            is_same(moments.min(), moments.max()).then_some(moments.max()).filter(|&moment| moment > 0.0)
+        };
+        let moments: Vec<Option<f64>> = self.joints.iter().map(one_moment).collect();
+        let is_shared = |link: usize| {
+            let alike = |other: &Option<f64>| matches!((moments[link], *other), (Some(a), Some(b)) if is_same(a, b));
+            moments.iter().filter(|other| alike(other)).count() > 1
+        };
         let tool = self.tool_frame().link_from_frame.translation;
         let ends = self.joints[1..].iter().map(|next| next.parent_from_joint.translation);
         let links = self.joints.iter().zip(ends.chain(std::iter::once(tool))).enumerate();
         let body = |(link, (joint, end)): (usize, (&Joint, Vector3<f64>))| {
             let body = joint.inertia;
-            let moments = body.tensor.symmetric_eigenvalues();
-            let are_equal = moments.max() - moments.min() < NEARLY_EQUAL * moments.max();
-            let largest = if are_equal { LARGE * reach } else { reach };
-            let is_placeholder = gyration(&body).is_some_and(|radius| reach > LEAST_REACH && radius > largest);
+            let is_large = gyration(&body).is_some_and(|radius| reach > LEAST_REACH && radius > LARGE * reach);
             let radius = (end.norm().max(2.0 * body.com.norm()) / 12f64.sqrt()).max(LEAST_RADIUS);
             let tensor = Matrix3::identity() * (body.mass * radius * radius);
-            is_placeholder.then_some((link, Inertia { tensor, ..body }))
+            (is_large && is_shared(link)).then_some((link, Inertia { tensor, ..body }))
         };
         links.filter_map(body).collect()
     }

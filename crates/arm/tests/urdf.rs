@@ -221,32 +221,34 @@ fn entities_are_not_expanded() {
     assert!(message.contains("e.urdf"), "{message}");
 }
 
+/// An arm of two links of 0.2 kg with these three equal moments of inertia (kg m²).
+fn two_links(upper: &str, fore: &str) -> String {
+    let link = |name: &str, moment: &str| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='0.2'/><inertia ixx='{moment}' ixy='0' ixz='0' \
+             iyy='{moment}' iyz='0' izz='{moment}'/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/><origin xyz='0.3 0 0'/>\
+             <axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='9' velocity='9'/></joint>"
+        )
+    };
+    format!(
+        "<robot name='two'>\n<link name='base'/>\n{}\n{}\n{}\n{}\n</robot>",
+        link("upper", upper),
+        link("fore", fore),
+        joint("shoulder", "base", "upper"),
+        joint("elbow", "upper", "fore")
+    )
+}
+
 /// Placeholders of 1 kg m² on a link of 0.2 kg are those of a body that is larger than the arm.
 #[test]
 fn moments_of_inertia_larger_than_the_arm_are_doubted() {
-    let urdf = |moment: &str| {
-        let link = |name: &str, moment: &str| {
-            format!(
-                "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='0.2'/><inertia ixx='{moment}' ixy='0' ixz='0' \
-                 iyy='{moment}' iyz='0' izz='{moment}'/></inertial></link>"
-            )
-        };
-        let joint = |name: &str, parent: &str, child: &str| {
-            format!(
-                "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/><origin xyz='0.3 0 0'/>\
-                 <axis xyz='0 1 0'/><limit lower='-3' upper='3' effort='9' velocity='9'/></joint>"
-            )
-        };
-        format!(
-            "<robot name='two'>\n<link name='base'/>\n{}\n{}\n{}\n{}\n</robot>",
-            link("upper", "1e-3"),
-            link("fore", moment),
-            joint("shoulder", "base", "upper"),
-            joint("elbow", "upper", "fore")
-        )
-    };
     let warnings = |moment: &str| {
-        let arm = Arm::from_urdf_text(&urdf(moment), "two.urdf").expect("it is an arm");
+        let arm = Arm::from_urdf_text(&two_links("1e-3", moment), "two.urdf").expect("it is an arm");
         arm.warnings().join("; ")
     };
     assert_eq!(warnings("1e-3"), "");
@@ -256,16 +258,23 @@ fn moments_of_inertia_larger_than_the_arm_are_doubted() {
         "{doubted}"
     );
     assert!(!doubted.contains("upper"), "{doubted}");
-    // A placeholder that is smaller than the arm has three equal moments; a body of its mass and length is taken in its place.
-    let bodies = |moment: &str| {
-        let arm = Arm::from_urdf_text(&urdf(moment), "two.urdf").expect("it is an arm");
+}
+
+/// Bodies of the links' masses and lengths are taken in the place of 1 kg m² on both links of an arm. Other large moments may be those of drives.
+#[test]
+fn one_large_moment_on_several_links_is_a_placeholder() {
+    let bodies = |upper: &str, fore: &str| {
+        let arm = Arm::from_urdf_text(&two_links(upper, fore), "two.urdf").expect("it is an arm");
         arm.bodies_for_placeholders()
     };
-    assert!(bodies("1e-3").is_empty());
+    assert!(bodies("1e-3", "1e-3").is_empty() && bodies("0.9", "1").is_empty());
     for moment in ["0.02", "1"] {
-        let [(1, body)] = bodies(moment)[..] else { panic!("{moment}: the second link") };
-        assert!(body.mass == 0.2 && (body.com.x - 0.1).abs() < 1e-12, "{body:?}");
-        let rod = 0.2 * 0.2 * 0.2 / 12.0;
-        assert!((body.tensor - arm::Matrix3::<f64>::identity() * rod).amax() < 1e-12, "{}", body.tensor);
+        let bodies = bodies(moment, moment);
+        let rods = [0.3_f64, 0.2].map(|length| 0.2 * length * length / 12.0);
+        assert_eq!(bodies.len(), 2);
+        for ((_, body), rod) in bodies.iter().zip(rods) {
+            assert!(body.mass == 0.2 && (body.com.x - 0.1).abs() < 1e-12, "{body:?}");
+            assert!((body.tensor - arm::Matrix3::<f64>::identity() * rod).amax() < 1e-12, "{body:?}");
+        }
     }
 }

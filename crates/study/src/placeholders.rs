@@ -29,9 +29,9 @@ pub fn replaced(arm: &Arm, known: &[Effect]) -> Option<Replaced> {
         arm: bodies.iter().fold(arm.clone(), |arm, (link, body)| arm.with_link_inertia(*link, *body)),
         effects: bodies.iter().map(|(link, body)| link_effect(&joint(*link).name, body)).collect(),
         remark: format!(
-            "the moments of inertia of {} are those of a body too large for this arm: in their place, those of a rod of the link's mass and \
-             length count as known, and what --urdf and --model write has them; correct <inertia>, or take the URDF as exact with \
-             --urdf-accuracy 0",
+            "the moments of inertia of {} are all the same number, of bodies too large for this arm: in their place, those of a rod of the \
+             link's mass and length count as known, and what --urdf and --model write has them; correct <inertia>, or take the URDF as exact \
+             with --urdf-accuracy 0",
             names.join(", ")
         ),
     })
@@ -39,20 +39,21 @@ pub fn replaced(arm: &Arm, known: &[Effect]) -> Option<Replaced> {
 
 #[cfg(test)]
 mod tests {
-    use arm::ChainOptions;
+    use arm::{ChainOptions, Inertia, Matrix3};
 
     use super::*;
     use crate::robot::named_robot;
 
-    /// Moments of 1 kg m² on one link of the PUMA 560 are replaced, unless its body is known.
+    /// Moments of 1 kg m² on two links of the PUMA 560 are replaced, unless their bodies are known.
     #[test]
     fn a_placeholder_is_replaced_unless_the_body_is_known() {
         let robot = named_robot("puma560").expect("it comes with testbed");
         let arm = robot.arm(&ChainOptions::default()).expect("an arm");
         assert!(replaced(&arm, &[]).is_none());
-        let mut body = arm.joints()[3].inertia;
-        body.tensor = arm::Matrix3::identity();
-        let wrong = arm.clone().with_link_inertia(3, body);
+        let wrong = [3, 4].into_iter().fold(arm, |arm, link| {
+            let body = Inertia { tensor: Matrix3::identity(), ..arm.joints()[link].inertia };
+            arm.with_link_inertia(link, body)
+        });
         let Replaced { arm: right, effects, remark } = replaced(&wrong, &[]).expect("a placeholder");
         assert!(remark.contains(&wrong.joints()[3].link_name), "{remark}");
         let moment = right.joints()[3].inertia.tensor[(0, 0)];
