@@ -48,10 +48,13 @@ pub fn columns(report: &Report) -> String {
     )
 }
 
+/// What an unexplained residual is called.
+const UNEXPLAINED: &str = "unexplained";
+
 /// The row of an unexplained residual, with the cells of its joint and of the joint's error.
 fn residual(open: &Unexplained, [joint, error]: [String; 2]) -> [String; 5] {
     let size = numbers::share(open.share);
-    [joint, "unexplained".to_owned(), "–".to_owned(), size, error]
+    [joint, UNEXPLAINED.to_owned(), "–".to_owned(), size, error]
 }
 
 /// The findings by joint, the joint with the largest share first, each with the joint's unexplained residual; then the joints of which
@@ -60,7 +63,7 @@ pub fn table(report: &Report) -> String {
     let mut table = super::table(["joint", "effect", "size", "share", "error"].map(str::to_owned));
     table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_width(WIDTH as u16);
-    let effects = report.findings.iter().map(effect);
+    let effects = report.findings.iter().map(effect).chain(report.unexplained.iter().map(|_| UNEXPLAINED.to_owned()));
     let words = effects.flat_map(|effect| effect.split(' ').map(|word| word.chars().count()).max());
     let longest = words.max().map_or(0, |length| length + 1) as u16;
     for (index, column) in table.column_iter_mut().enumerate() {

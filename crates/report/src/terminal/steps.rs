@@ -73,12 +73,17 @@ fn residuals(report: &Report) -> Vec<String> {
     said.collect()
 }
 
-/// The findings with alternatives, with the experiment that distinguishes them.
+/// The findings with alternatives, with the experiment that distinguishes them; joints with the same one are together.
 fn ambiguous(report: &Report) -> Vec<String> {
-    let findings = report.findings.iter().filter(|finding| alternatives::has_any(finding));
-    let said = findings.map(|finding| {
-        let place = words::joint(finding.joint.as_deref());
-        format!("{place}, {}: {}", words::effect(finding), alternatives::with_experiment(finding))
-    });
+    let mut groups: Vec<(String, String, Vec<String>)> = Vec::new();
+    for finding in report.findings.iter().filter(|finding| alternatives::has_any(finding)) {
+        let (place, effect) = (words::joint(finding.joint.as_deref()).to_owned(), words::effect(finding));
+        let could_be = alternatives::with_experiment(finding);
+        match groups.iter_mut().find(|(other, others, _)| *other == effect && *others == could_be) {
+            Some((.., places)) => places.push(place),
+            None => groups.push((effect, could_be, vec![place])),
+        }
+    }
+    let said = groups.iter().map(|(effect, could_be, places)| format!("{}, {effect}: {could_be}", words::list(places)));
     said.collect()
 }

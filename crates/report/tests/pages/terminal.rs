@@ -48,6 +48,26 @@ fn the_short_text_is_one_screen_with_at_most_three_next_steps() {
     assert!(steps(&text) == 4 && text.contains("more with --verbose"), "{text}");
 }
 
+/// Findings that one experiment distinguishes from the same alternatives are one step, and the table breaks no word.
+#[test]
+fn findings_with_the_same_alternatives_are_one_step() {
+    let (mut report, ..) = made_up::diagnosis(6, Plot::Rich);
+    report.next_experiment = None;
+    let is_ambiguous = |finding: &&diagnosis::Finding| finding.joint.is_some() && !finding.confusable_with.is_empty();
+    let mut finding = report.findings.iter().find(is_ambiguous).expect("a finding has an alternative").clone();
+    for other in &mut finding.confusable_with {
+        other.joint = None;
+    }
+    let on = |joint: &str| diagnosis::Finding { joint: Some(joint.to_owned()), ..finding.clone() };
+    report.findings = ["a_joint_with_a_very_long_name_indeed", "another_joint"].map(on).into();
+    report.unexplained.truncate(1);
+    report.unexplained[0].joint = "a_joint_with_a_very_long_name_indeed".to_owned();
+    let text = terminal::diagnosis(&report);
+    assert_eq!(text.matches("could also be").count(), 1, "{text}");
+    assert!(text.contains("\n- a_joint_with_a_very_long_name_indeed and another_joint, "), "{text}");
+    assert!(text.contains("unexplained "), "{text}");
+}
+
 /// Each alternative has the experiment for the pair, where there is one, and else that for the finding's effect.
 #[test]
 fn alternatives_have_their_own_experiments() {
