@@ -4,8 +4,8 @@ mod checks;
 mod choose;
 mod fixed;
 mod inertial;
+mod lines;
 mod mimic;
-mod place;
 mod spelling;
 mod syntax;
 mod why;
@@ -311,7 +311,7 @@ impl<'a> Reader<'a> {
     fn error(&self, tag: &str, name: &str, reason: String, remedy: &str) -> ArmError {
         ArmError::Model {
             path: self.path.to_owned(),
-            line: place::line_of(self.text, tag, name),
+            line: lines::line_of(self.text, tag, name),
             element: format!("{tag} \"{name}\""),
             reason,
             remedy: remedy.to_owned(),

@@ -40,7 +40,7 @@ pub mod inputs;
 pub mod mjcf_file;
 pub mod named;
 pub mod notes;
-mod placeholders;
+pub mod placeholders;
 mod request;
 pub mod robot;
 mod source;

@@ -29,9 +29,9 @@ pub fn replaced(arm: &Arm, known: &[Effect]) -> Option<Replaced> {
         arm: bodies.iter().fold(arm.clone(), |arm, (link, body)| arm.with_link_inertia(*link, *body)),
         effects: bodies.iter().map(|(link, body)| link_effect(&joint(*link).name, body)).collect(),
         remark: format!(
-            "the moments of inertia of {} are all the same number, of bodies too large for this arm: in their place, those of a rod of the \
-             link's mass and length count as known, and what --urdf and --model write has them; correct <inertia>, or take the URDF as exact \
-             with --urdf-accuracy 0",
+            "the moments of inertia of {} are one number, that of bodies too large for this arm: a diagnosis takes those of a rod of the link's \
+             mass and length as known in their place, and writes them (--urdf, --model); correct <inertia>, or take the URDF as exact with \
+             --urdf-accuracy 0",
             names.join(", ")
         ),
     })

@@ -11,6 +11,7 @@ use report::doubts::{self, Certainty};
 use serde::Serialize;
 use study::check::{MisfitKind, turns};
 use study::notes::shortened;
+use study::placeholders::{Replaced, replaced};
 use study::robot::{self, RobotFile};
 use study::{check, inputs, named};
 
@@ -96,6 +97,10 @@ fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> a
     for warning in arm.warnings() {
         output::say(format_args!("note: {}: {warning}", robot.path.display()));
     }
+    let Some(Replaced { arm, remark, .. }) = replaced(&arm, &[]) else {
+        return Ok(arm);
+    };
+    output::say(format_args!("note: {}: {remark}", robot.path.display()));
     Ok(arm)
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::Reader;
-use super::place::line_of;
+use super::lines::line_of;
 use crate::error::ArmError;
 use crate::inertia::Inertia;
 use crate::joint::Joint;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use quick_xml::events::{BytesStart, Event};
 
-use super::place::{line_at, syntax_error};
+use super::lines::{line_at, syntax_error};
 use crate::error::ArmError;
 
 /// An element that decides on the dynamics, with the names in it that do.

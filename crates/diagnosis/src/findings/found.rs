@@ -17,21 +17,21 @@ use crate::selection::gain::held_out_gain;
 use crate::selection::judge::Member;
 use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::payload::as_last_link;
-use crate::selection::rivals::{Comparison, Rival, probability, standing};
+use crate::selection::rivals::{Comparison, Rival, compared, probability};
 use crate::selection::torque_constants;
 use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MUCH_WRONG_LINKS, SUREST, UNSURE_MASS};
 
 /// The findings, each with its candidate.
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
     let problem = last.problem();
-    let standing = |member: &Member| standing(&last.study, &problem, &last.judged.named, member.candidate);
-    let standings: Vec<(&Member, Comparison)> =
-        last.judged.members.iter().map(|member| (member, standing(member))).collect();
-    let beside = possible_beside(last, &standings);
-    standings
+    let compared = |member: &Member| compared(&last.study, &problem, &last.judged.named, member.candidate);
+    let comparisons: Vec<(&Member, Comparison)> =
+        last.judged.members.iter().map(|member| (member, compared(member))).collect();
+    let beside = possible_beside(last, &comparisons);
+    comparisons
         .iter()
-        .flat_map(|(member, standing)| {
-            let mut list = finding(last, &problem, member, standing);
+        .flat_map(|(member, comparison)| {
+            let mut list = finding(last, &problem, member, comparison);
             if let Some(first) = list.first_mut() {
                 widen(first, last, &problem, member, &beside);
             }
@@ -40,7 +40,7 @@ pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
         .collect()
 }
 
-fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &Comparison) -> Vec<Finding> {
+fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, comparison: &Comparison) -> Vec<Finding> {
     let study = &last.study;
     let candidate = &study.candidates[member.candidate];
     let joint_name = |joint: usize| study.data.arm.joints()[joint].name.clone();
@@ -92,7 +92,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &C
             other: named.other,
             parameters: named.parameters,
             // The probability is calibrated for the effects that were searched, not for one that is brought along.
-            probability: (k == 0).then(|| standing.probability(if is_open { 0.0 } else { evidence })),
+            probability: (k == 0).then(|| comparison.probability(if is_open { 0.0 } else { evidence })),
             share,
             share_by_joint: if k == 0 {
                 share_by_joint.clone()
@@ -102,7 +102,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &C
             held_out_gain: gain,
             confusable_with: if k == 0 {
                 let mut list: Vec<Confusable> = Vec::new();
-                let rivals = standing.rivals.iter().chain(&standing.as_likely);
+                let rivals = comparison.rivals.iter().chain(&comparison.as_likely);
                 for rival in rivals.chain(&last_link).chain(&as_links).chain(&as_masses).map(confusable) {
                     if !list.contains(&rival) {
                         list.push(rival);
@@ -113,7 +113,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, standing: &C
                 Vec::new()
             },
             confusable_with_pairs: if k == 0 {
-                standing.pairs.iter().map(|pair| pair.each_ref().map(confusable)).collect()
+                comparison.pairs.iter().map(|pair| pair.each_ref().map(confusable)).collect()
             } else {
                 Vec::new()
             },

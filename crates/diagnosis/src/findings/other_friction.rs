@@ -16,9 +16,9 @@ pub fn possible_beside(last: &FinalFit, of: &[(&Member, Comparison)]) -> Vec<Riv
     let is_plain = |member: &Member| study.candidates[member.candidate].hypothesis.is_plain_friction();
     let plain = of.iter().filter(|(member, _)| is_plain(member));
     let drag = Hypothesis::of(&QUADRATIC_DRAG);
-    let drags = plain.flat_map(|(member, standing)| {
+    let drags = plain.flat_map(|(member, comparison)| {
         let joint = study.candidates[member.candidate].joint;
-        let rivals = standing.rivals.iter().copied();
+        let rivals = comparison.rivals.iter().copied();
         rivals.filter(move |&(hypothesis, on)| hypothesis == drag && on == joint)
     });
     drags.collect()

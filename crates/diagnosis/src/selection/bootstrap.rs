@@ -11,7 +11,9 @@ use crate::data::statistics::{NORMAL_95, quantile_of_sorted};
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
-use crate::thresholds::{BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, LARGEST_CORRECTION, MOST_BLOCKS, UNEVEN};
+use crate::thresholds::{
+    BLOCK, DRAWS, INFLATION, INFLATION_IN_DRIVES, LARGEST_CORRECTION, MOST_BLOCKS, UNEVEN, UNEVEN_WITH_SPEED,
+};
 
 /// The relative step of a derivative by a size.
 const STEP: f64 = 0.02;
@@ -244,8 +246,8 @@ impl PriorDraws {
         let is_stated = study.stated.gain.is_some();
         // The spread of the draws is multiplied by an inflation that is not that of a stated deviation.
         let times = |k: usize, uneven: f64, inflation: f64| match term(k) {
-            Some(term) if is_stated && term.is(&GAIN_LAW) => 1.0 / inflation,
-            Some(term) if is_viscous(&term) => 1.0,
+            Some(term) if is_stated && term.is(&GAIN_LAW) => inflation.recip(),
+            Some(term) if grows_with_speed(&term) => UNEVEN_WITH_SPEED,
             _ => uneven,
         };
         let times = |uneven: f64, inflation: f64| DVector::from_fn(p, |k, _| times(k, uneven, inflation));
@@ -276,8 +278,8 @@ impl PriorDraws {
     }
 }
 
-/// Whether a term of the background is a part of the friction that grows with the speed.
-fn is_viscous(term: &Term) -> bool {
+/// Whether a term of the background is a part of the friction that grows with the speed: that of a recording of its own, or drag.
+fn grows_with_speed(term: &Term) -> bool {
     term.form == 1 && (term.is(&FRICTION_CURVE) || term.is(&OWN_FRICTION))
 }
 

@@ -13,7 +13,7 @@ use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
 use crate::selection::payload::{self, possible::make_moments_possible, without_moment::without_moment};
 use crate::selection::predict::errors_with;
-use crate::selection::rivals::standing;
+use crate::selection::rivals::compared;
 use crate::selection::torque_constants;
 use crate::selection::unclear::{Unclear, unclear};
 
@@ -236,7 +236,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         }
         // A payload or a factor on the inertial parameters improves the fit whenever the inertial parameters are wrong in any way.
         let is_small = !hypothesis.spec().is_friction && member.share() < LEAST_UNDECIDED;
-        let margin = || standing(study, &study.problem(&products), &judged.named, member.candidate).margin_over_single;
+        let margin = || compared(study, &study.problem(&products), &judged.named, member.candidate).margin_over_single;
         if (is_small || hypothesis.spec().is_wrong_mass || hypothesis.is(&TORQUE_SCALE)) && margin() < UNDECIDED_NATS {
             return Some(("another effect explains nearly as much in its place", false));
         }

@@ -127,7 +127,9 @@ impl Estimate for Reader<'_> {
             (Some(quantity), Some(accuracy)) if quantity.scales_with_torque() => NORMAL_95 * accuracy,
             _ => 0.0,
         };
-        let (value, mut ci95) = self.resampled.interval_within(systematic + accuracy, f);
+        let (value, [low, high]) = self.resampled.interval_within(systematic, f);
+        let of_constants = accuracy * value.abs();
+        let mut ci95 = [value - (value - low).hypot(of_constants), value + (high - value).hypot(of_constants)];
         if is_from_above {
             ci95[0] = 0.0;
         }

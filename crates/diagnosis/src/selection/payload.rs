@@ -16,14 +16,13 @@
 
 use effects::arm::INERTIAL_PARAMETERS;
 
-use crate::regression::bodies::PER_LINK;
 use crate::search::candidate::Hypothesis;
 use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::naming::{Named, name};
 use crate::selection::rivals::Rival;
-use crate::thresholds::{BESIDE_FEW_LINKS, FEW_JOINTS, LEAST_MOUNTED, LEAST_PAYLOAD};
+use crate::thresholds::{BESIDE_FEW_LINKS, FEW_JOINTS, LEAST_MOUNTED, LEAST_OF_THE_LINK, LEAST_PAYLOAD};
 
 pub mod compact;
 pub mod possible;
@@ -36,13 +35,12 @@ pub fn is_doubtful(study: &Study, selected: &Selection, payload: usize) -> bool 
     may_differ && is_small(study, selected, payload) || study.strengths.are_of_some_links()
 }
 
-/// Whether a payload is small beside the last link, which may then differ from the URDF by as much: a centre of mass that lies some
+/// Whether a payload, or a body that is missing, is small beside the last link, which may then differ from the URDF by as much: a centre of mass that lies some
 /// millimetres elsewhere has the same torque.
 fn is_small(study: &Study, selected: &Selection, payload: usize) -> bool {
     let candidate = &study.candidates[payload];
-    let mass = selected.fit.coefficient(candidate.columns[0]);
-    let least = LEAST_MOUNTED * study.mass_of_last_link();
-    candidate.columns.len() == PER_LINK && study.always_acts(payload) && mass > 0.0 && mass < least
+    let relative = selected.fit.coefficient(candidate.columns[0]) / study.mass_of_last_link();
+    study.always_acts(payload) && relative < LEAST_MOUNTED && relative > -LEAST_OF_THE_LINK
 }
 
 /// Whether `payload` is a body of a few grams that was always there: no other than the last link with a mass of its usual accuracy.

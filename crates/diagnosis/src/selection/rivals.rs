@@ -90,7 +90,7 @@ pub fn alias(study: &Study, selected: &Selection, member: usize, set: &[usize]) 
 }
 
 /// Tries every other hypothesis in the place of `member`.
-pub fn standing(study: &Study, problem: &Problem<'_>, selected: &Selection, member: usize) -> Comparison {
+pub fn compared(study: &Study, problem: &Problem<'_>, selected: &Selection, member: usize) -> Comparison {
     let finding = &study.candidates[member];
     let set = beside(study, selected, member);
     let without = problem.choose(set.clone(), &selected.fit.weights);

@@ -77,3 +77,27 @@ impl Common {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::thresholds::LEAST_LAG_NATS;
+
+    /// Whether estimates with a standard deviation of one have a common value that is seen without each of them.
+    fn is_common(values: &[f64]) -> bool {
+        let (values, covariance) = (DVector::from_column_slice(values), DMatrix::identity(values.len(), values.len()));
+        Common::of_most(&values, &covariance).is_some_and(|(common, agreeing)| {
+            common.is_seen_without_each(&values, &covariance, &agreeing, LEAST_LAG_NATS)
+        })
+    }
+
+    #[test]
+    fn a_value_is_common_though_none_of_the_estimates_is_clear_alone() {
+        assert!(is_common(&[1.7, 2.5, 2.1, 2.8, 2.2, 3.0]));
+        assert!(!is_common(&[0.7, -0.5, 1.1, 0.2, -1.2, 0.4]));
+        // One joint has all the evidence.
+        assert!(!is_common(&[0.4, 0.1, 30.0, 0.2, -0.3, 0.5]));
+        // They differ by more than chance.
+        assert!(!is_common(&[9.0, 1.0, -7.0, 5.0, 0.0, -3.0]));
+    }
+}

@@ -1,7 +1,8 @@
 //! Recordings that were made with different loads at the tip.
 
 use crate::support::{
-    ELBOW, Motion, SHOULDER, baseline_friction, inputs, motion, named, recorded, regular, sentences, start, trio,
+    ELBOW, Motion, SHOULDER, baseline_friction, diagnosed_with, inputs, motion, named, recorded, regular, sentences,
+    start, trio,
 };
 use arm::{Arm, Inertia, Matrix3, Vector3, Workspace};
 use diagnosis::{Diagnosis, Options, diagnose};
@@ -206,4 +207,20 @@ fn a_load_of_the_held_out_recording_alone_is_in_its_prediction() {
     for (joint, fit) in &diagnosis.report.fit {
         assert!(fit.held_out_nrmse_augmented.is_some_and(|error| error < 0.03), "{joint}: {fit:?}");
     }
+}
+
+/// A stated accuracy of the torque constants is in the interval of a mass once, not multiplied by what is not known of the drives. Constants
+/// that differ from joint to joint change the mass by more than their deviation.
+#[test]
+fn the_interval_of_a_payload_has_the_stated_accuracy_once() {
+    let accuracy = 0.03;
+    let options = Options { torque_accuracy: Some(accuracy), urdf_accuracy: Some(0.0), ..Options::default() };
+    let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
+    let found = diagnosed_with(&trio(), &with_load(&trio(), 1.0), &friction, &options);
+    let report = found.expect("it can be diagnosed").report;
+    let payload = report.findings.iter().find(|finding| finding.effect == "payload").expect("there is one");
+    let mass = &payload.parameters["mass"];
+    let half = 0.5 * (mass.ci95[1] - mass.ci95[0]) / mass.value;
+    assert!((mass.value - 1.0).abs() < 0.02, "{mass:?}");
+    assert!((1.96 * accuracy..5.0 * accuracy).contains(&half), "{half}: {mass:?}");
 }

@@ -80,6 +80,7 @@ fn ambiguous(report: &Report) -> Vec<String> {
         let (place, effect) = (words::joint(finding.joint.as_deref()).to_owned(), words::effect(finding));
         let could_be = alternatives::with_experiment(finding);
         match groups.iter_mut().find(|(other, others, _)| *other == effect && *others == could_be) {
+            Some((.., places)) if places.contains(&place) => {}
             Some((.., places)) => places.push(place),
             None => groups.push((effect, could_be, vec![place])),
         }

@@ -15,7 +15,7 @@ use crate::selection::bootstrap::{Resampled, resample};
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::name;
 use crate::selection::predict::errors_with;
-use crate::selection::rivals::{Rival, allowance, standing};
+use crate::selection::rivals::{Rival, allowance, compared};
 use crate::thresholds::{LEAST_BESIDE_SOME_LINKS, LEAST_OF_THE_LINK, NEARLY_ALL, PARTLY, UNDECIDED_NATS};
 
 /// Names a body that is missing at the tool, if the background or a lighter last link represents one and no other effect explains
@@ -46,11 +46,11 @@ pub fn unmounted(study: &mut Study, judged: &mut Judged) -> Option<Resampled> {
     let products = study.training_products();
     let problem = study.problem(&products);
     let is_undecided = || {
-        let standing = standing(study, &problem, &next, body);
+        let comparison = compared(study, &problem, &next, body);
         // The background and a lighter last link were compared in `instead`.
         let replaced = lighter.map(|c| (study.candidates[c].hypothesis, study.candidates[c].joint));
         let is_other = |rival: &Rival| !rival.0.is(&INERTIAL_PARAMETERS) && Some(*rival) != replaced;
-        standing.margin < UNDECIDED_NATS && standing.rivals.iter().any(is_other)
+        comparison.margin < UNDECIDED_NATS && comparison.rivals.iter().any(is_other)
     };
     if !is_missing || is_undecided() || !explains_a_part(study, &next) {
         study.strengths = before;
