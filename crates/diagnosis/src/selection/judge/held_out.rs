@@ -63,9 +63,10 @@ pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> 
             let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
             let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
             let mut gain = there.max(held.loss(&without) - held.loss(&with));
-            // The background in its place predicts as well, but costs more evidence. Friction is present in every drive, so that
-            // all recordings decide on it.
-            if problem.is_background_too(this) || this.hypothesis.spec().is_friction {
+            // The background in its place predicts as well, but costs more evidence. Friction and the inertia of the drive are present in
+            // every joint, so that all recordings decide on them.
+            let is_everywhere = this.hypothesis.spec().is_friction || this.hypothesis.is_drive_inertia();
+            if problem.is_background_too(this) || is_everywhere {
                 gain += rest.score - selected.score;
             }
             (removed, gain, rss(&rest))
