@@ -43,7 +43,7 @@ fn recordings_are_not_checked_against_placeholders() {
     assert!(notes.contains("link1, link2 are one number"), "{notes}");
     let report = &found.diagnosis.report;
     assert!(report.verdict != Verdict::UnitsFirst && report.doubts.is_empty(), "{:?}", report.doubts);
-    let names: Vec<&str> = found.effects.iter().map(|effect| effect.name()).collect();
+    let names: Vec<&str> = found.effects.iter().map(effects::Effect::name).collect();
     assert!(names.contains(&"inertial_parameters"), "{names:?}");
     let (exact, notes) = diagnosed(folder.path(), Some(0.0));
     assert!(!notes.contains("one number"), "{notes}");
