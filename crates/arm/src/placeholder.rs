@@ -37,10 +37,7 @@ impl Arm {
             self.joints.iter().map(|joint| joint.inertia.mass).filter(|&mass| mass > 0.0).collect();
         masses.sort_by(f64::total_cmp);
         let usual = masses.get(masses.len() / 2).copied().unwrap_or(0.0);
-        let tool = self.tool_frame();
-        let ends = self.joints[1..].iter().map(|next| &next.parent_from_joint);
-        let ends = ends.chain(std::iter::once(&tool.link_from_frame));
-        let lengths = ends.map(|end| end.translation.norm()).enumerate();
+        let lengths = self.lengths().into_iter().enumerate();
         let first = &self.joints[0];
         let axis = first.parent_from_joint.rotation * first.axis;
         let is_upright = axis.cross(&self.gravity).norm() < 1e-3 * self.gravity.norm();
@@ -77,19 +74,24 @@ impl Arm {
         else {
             return Vec::new();
         };
-        let tool = self.tool_frame().link_from_frame.translation;
-        let ends = self.joints[1..].iter().map(|next| next.parent_from_joint.translation);
-        let links = self.joints.iter().zip(ends.chain(std::iter::once(tool))).enumerate();
-        let body = |(link, (joint, end)): (usize, (&Joint, Vector3<f64>))| {
+        let links = self.joints.iter().zip(self.lengths()).enumerate();
+        let body = |(link, (joint, length)): (usize, (&Joint, f64))| {
             let body = joint.inertia;
             let (least, most) = extremes(joint);
             // Bodies that are fixed to a link add theirs to its moments.
             let has_it = is_same(least, number) && is_same(most, number) || least >= number && is_large(joint);
-            let radius = (end.norm().max(2.0 * body.com.norm()) / 12f64.sqrt()).max(LEAST_RADIUS);
+            let radius = (length.max(2.0 * body.com.norm()) / 12f64.sqrt()).max(LEAST_RADIUS);
             let tensor = Matrix3::identity() * (body.mass * radius * radius);
             has_it.then_some((link, Inertia { tensor, ..body }))
         };
         links.filter_map(body).collect()
+    }
+
+    /// The length of each link from its frame to the next joint or the tool (m).
+    fn lengths(&self) -> Vec<f64> {
+        let tool = self.tool_frame().link_from_frame;
+        let ends = self.joints[1..].iter().map(|next| &next.parent_from_joint);
+        ends.chain(std::iter::once(&tool)).map(|end| end.translation.norm()).collect()
     }
 
     /// The length of the arm with all its links' centres of mass and travels in one line (m).

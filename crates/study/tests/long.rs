@@ -1,13 +1,15 @@
 //! Diagnoses of long recordings and of slow logs: which parts are used, and what is reported.
 
-use std::cell::RefCell;
+mod support;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use diagnosis::{Step, Verdict};
+use diagnosis::Verdict;
 use study::inputs::{Given, Recordings};
-use study::notes::Notes;
-use study::{Diagnosed, Listener, Request};
+use study::{Diagnosed, Request};
+
+use support::Heard;
 
 const ARM: &str = r#"<robot name="pendulum"><link name="base"/><link name="arm"><inertial><origin xyz="0 0 -0.3"/><mass value="2"/>
 <inertia ixx="0.05" iyy="0.05" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>
@@ -37,19 +39,6 @@ fn write(file: &Path, seconds: u32, rate: u32, from: f64, pace: f64) {
         writeln!(text, "{t:.3},{q:.6},{tau:.6}").expect("it is written");
     }
     std::fs::write(file, text).expect("it is written");
-}
-
-#[derive(Default)]
-struct Heard(RefCell<Vec<String>>);
-
-impl Listener for Heard {
-    fn doing(&self, _: Step<'_>) {}
-
-    fn note(&self, text: &str) {
-        self.0.borrow_mut().push(text.to_owned());
-    }
-
-    fn recordings(&self, _: &Notes) {}
 }
 
 /// The diagnosis of training and held-out recordings, and the notes.

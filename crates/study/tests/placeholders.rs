@@ -1,24 +1,14 @@
 //! Diagnoses of a robot whose URDF has placeholders of moments of inertia.
 
-use std::cell::RefCell;
+mod support;
+
 use std::path::Path;
 
-use diagnosis::{Step, Verdict};
+use diagnosis::Verdict;
 use study::inputs::{Given, Recordings};
-use study::notes::Notes;
-use study::{Diagnosed, Listener, Request};
+use study::{Diagnosed, Request};
 
-/// The notes of a diagnosis.
-#[derive(Default)]
-struct Heard(RefCell<Vec<String>>);
-
-impl Listener for Heard {
-    fn doing(&self, _: Step<'_>) {}
-    fn note(&self, text: &str) {
-        self.0.borrow_mut().push(text.to_owned());
-    }
-    fn recordings(&self, _: &Notes) {}
-}
+use support::Heard;
 
 /// A diagnosis of the double pendulum with the robot in `folder`, and its notes.
 fn diagnosed(folder: &Path, urdf_accuracy: Option<f64>) -> (Diagnosed, String) {
