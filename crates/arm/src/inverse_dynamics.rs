@@ -50,6 +50,23 @@ impl Arm {
         }
     }
 
+    /// Turns τ_{i+1} and f_{i+1} of the `features` that [`Self::newton_euler_features`] computed last with `workspace` into link i's frame
+    /// (ⁱR_{i+1} τ_{i+1} and ⁱR_{i+1} f_{i+1}, as they enter equation 15 of the paper). Their component along the axis of a revolute joint i
+    /// is then a linear function of the features that does not depend on q_{i+1}.
+    ///
+    /// # Panics
+    /// If `features` or the workspace is of another size than the arm.
+    pub fn turn_loads_into_own_frames(&self, workspace: &Workspace, features: &mut [NewtonEulerFeatures]) {
+        assert_eq!(features.len(), self.dof(), "one set of features a joint");
+        for (feature, next) in features.iter_mut().zip(&workspace.scratch.places[1..]) {
+            for from in [6, 9] {
+                let load = Vec3::new(feature[from], feature[from + 1], feature[from + 2]);
+                let Vec3 { x, y, z } = mul(&next.rotation, &load);
+                feature[from..from + 3].copy_from_slice(&[x, y, z]);
+            }
+        }
+    }
+
     /// The bias torque C(q, q̇) q̇ + g(q), which is the torque at zero acceleration (N m or N).
     ///
     /// # Panics

@@ -157,3 +157,29 @@ fn newton_euler_features_are_the_loads_between_links() {
         assert!(features[n - 1][6..12].iter().all(|x| *x == 0.0));
     });
 }
+
+/// In link i's frame, the load of the next link is the same vector: at rest, its force is opposite to the weight of the distal links.
+#[test]
+fn loads_in_own_frames_are_the_same_vectors() {
+    for_each_state(|arm, workspace, random| {
+        let n = arm.dof();
+        let q = random.vector(n, 3.0);
+        let zeros = vec![0.0; n];
+        let mut tau = vec![0.0; n];
+        let mut features = vec![[0.0; arm::FEATURES]; n];
+        arm.newton_euler_features(workspace, &q, &zeros, &zeros, &mut tau, &mut features);
+        let before = features.clone();
+        arm.turn_loads_into_own_frames(workspace, &mut features);
+        arm.forward_kinematics(workspace, &q);
+        for i in 0..n {
+            let base_from_link = workspace.base_from_link(i).rotation;
+            let distal: f64 = arm.joints()[i + 1..].iter().map(|joint| joint.inertia.mass).sum();
+            let force = base_from_link * Vector3::from_column_slice(&features[i][9..12]);
+            assert_close("weight", force.as_slice(), (-distal * arm.gravity()).as_slice(), 1e-12);
+            let norm = |feature: &[f64]| Vector3::from_column_slice(&feature[6..9]).norm();
+            assert_close("moment", &[norm(&features[i])], &[norm(&before[i])], 1e-12);
+            assert_eq!(features[i][..6], before[i][..6]);
+            assert_eq!(features[i][12], before[i][12]);
+        }
+    });
+}

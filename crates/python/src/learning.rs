@@ -45,9 +45,10 @@ impl Learned {
         let inputs = match inputs {
             "newton-euler-12" => Inputs::NewtonEuler12,
             "newton-euler-13" => Inputs::NewtonEuler13,
+            "newton-euler-own-frame" => Inputs::NewtonEulerOwnFrame,
             "joint-motion" => Inputs::JointMotion,
             other => {
-                let known = ["newton-euler-12", "newton-euler-13", "joint-motion"];
+                let known = ["newton-euler-12", "newton-euler-13", "newton-euler-own-frame", "joint-motion"];
                 return Err(unknown("inputs", other, &known));
             }
         };

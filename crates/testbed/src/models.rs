@@ -17,6 +17,8 @@ pub enum ModelKind {
     Hybrid,
     /// Rigid body plus one regression per joint on the 12 Newton-Euler inputs (the paper's IJL)
     IndependentJoint,
+    /// The independent-joint model with the load of the next link in the link's own frame
+    IndependentJointOwnFrame,
     /// The independent-joint model with its own rigid torque as the 13th input
     #[value(name = "independent-joint-13")]
     IndependentJoint13,
@@ -28,12 +30,13 @@ pub enum ModelKind {
 
 impl ModelKind {
     /// All models: the reference, those of the paper's tables, the newer ones.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::True,
         Self::RigidBody,
         Self::Gp,
         Self::Hybrid,
         Self::IndependentJoint,
+        Self::IndependentJointOwnFrame,
         Self::IndependentJoint13,
         Self::Lagrangian,
         Self::LagrangianOnly,
@@ -47,6 +50,7 @@ impl ModelKind {
             Self::Gp => "gp",
             Self::Hybrid => "hybrid",
             Self::IndependentJoint => "independent_joint",
+            Self::IndependentJointOwnFrame => "independent_joint_own_frame",
             Self::IndependentJoint13 => "independent_joint_13",
             Self::Lagrangian => "lagrangian",
             Self::LagrangianOnly => "lagrangian_only",
@@ -66,6 +70,7 @@ impl ModelKind {
             Self::Gp => "GP only",
             Self::Hybrid => "rigid body + GP",
             Self::IndependentJoint => "IJL, 12 inputs",
+            Self::IndependentJointOwnFrame => "IJL, 12 in own frame",
             Self::IndependentJoint13 => "IJL, 13 inputs",
             Self::Lagrangian => "rigid body + energies",
             Self::LagrangianOnly => "energies only",
@@ -133,6 +138,7 @@ impl ModelKind {
             Self::Gp => Box::new(train(None, Inputs::JointMotion)?),
             Self::Hybrid => Box::new(on_top(Inputs::JointMotion)?),
             Self::IndependentJoint => Box::new(on_top(Inputs::NewtonEuler12)?),
+            Self::IndependentJointOwnFrame => Box::new(on_top(Inputs::NewtonEulerOwnFrame)?),
             Self::IndependentJoint13 => Box::new(on_top(Inputs::NewtonEuler13)?),
             Self::Lagrangian | Self::LagrangianOnly => {
                 let make = match self {

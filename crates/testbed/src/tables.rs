@@ -21,11 +21,12 @@ use crate::{paper, training};
 const TRAINING: [&[&str]; 2] = [&["taskA"], &["taskA", "taskB", "taskC"]];
 
 /// The rows of a table: the paper's in its order, then ours.
-const ROWS: [ModelKind; 5] = [
+const ROWS: [ModelKind; 6] = [
     ModelKind::Gp,
     ModelKind::RigidBody,
     ModelKind::Hybrid,
     ModelKind::IndependentJoint,
+    ModelKind::IndependentJointOwnFrame,
     ModelKind::IndependentJoint13,
 ];
 

@@ -103,7 +103,7 @@ impl Learned {
             })
             .collect();
         model.regressions = regressions?;
-        model.reaches = model.regressions.iter().map(Reach::of).collect();
+        model.reaches = model.regressions.iter().zip(&y).map(|(gp, targets)| Reach::of(gp, targets)).collect();
         Ok(model)
     }
 
@@ -116,9 +116,12 @@ impl Learned {
                 let scratch = workspace.arm.get_or_insert_with(|| arm::Workspace::new(arm));
                 match self.inputs {
                     Inputs::JointMotion => arm.inverse_dynamics(scratch, q, qd, qdd, &mut workspace.rigid),
-                    Inputs::NewtonEuler12 | Inputs::NewtonEuler13 => {
+                    Inputs::NewtonEuler12 | Inputs::NewtonEuler13 | Inputs::NewtonEulerOwnFrame => {
                         let (rigid, features) = (&mut workspace.rigid, &mut workspace.features);
                         arm.newton_euler_features(scratch, q, qd, qdd, rigid, features);
+                        if self.inputs == Inputs::NewtonEulerOwnFrame {
+                            arm.turn_loads_into_own_frames(scratch, features);
+                        }
                     }
                 }
             }
