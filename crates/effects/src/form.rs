@@ -17,6 +17,8 @@ pub struct Grounds<'a> {
     pub span: Option<f64>,
     /// First and last time of each stretch (s).
     pub times: &'a [(f64, f64)],
+    /// Whether some recordings are from before a change.
+    pub has_change: bool,
     /// The mean inertia that each joint moves alone (kg m² or kg).
     pub mass: &'a [f64],
     /// The largest measured torque of each joint in the training recordings (N m or N).

@@ -169,10 +169,24 @@ pub fn shows_on(finding: &Finding) -> Option<&str> {
 pub fn changed(report: &Report) -> Option<String> {
     let text = match report.changed.as_deref()? {
         [] if report.different_load.is_some() => return None,
-        [] => "Since the recordings from before, no change was found.".to_owned(),
+        [] if report.verdict == Verdict::NotEnoughData => return None,
+        [] => no_change(report),
         list => format!("Changed since the recordings from before: {}.", list.join("; ")),
     };
     Some(text)
+}
+
+/// That nothing has changed, as far as it would show.
+fn no_change(report: &Report) -> String {
+    let mut open: Vec<String> = report.unexplained.iter().map(|open| open.joint.clone()).collect();
+    open.dedup();
+    let hidden = match open.len() {
+        0 => String::new(),
+        n if n > 3 => format!(" The unexplained residuals on {n} joints may hide one."),
+        1 => format!(" The unexplained residual on {} may hide one.", list(&open)),
+        _ => format!(" The unexplained residuals on {} may hide one.", list(&open)),
+    };
+    format!("Since the recordings from before, no change was found.{hidden}")
 }
 
 /// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so. A sentence on joints

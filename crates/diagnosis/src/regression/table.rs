@@ -57,6 +57,8 @@ pub struct Table {
     pub joints: Vec<JointTable>,
     /// The rows of each recording.
     pub rows: Vec<Range<usize>>,
+    /// Whether each recording is from before a change.
+    pub before: Vec<bool>,
     /// Another one whenever inner products change.
     identity: Arc<()>,
     /// The same one as long as columns are only added.
@@ -84,6 +86,7 @@ impl Table {
             from = to;
         }
         let held_out: Vec<bool> = motions.sources.iter().map(|source| source.held_out).collect();
+        let before: Vec<bool> = (0..rows.len()).map(|recording| motions.is_before(recording)).collect();
         let joints: Vec<JointTable> = (0..motions.dof)
             .into_par_iter()
             .map(|joint| {
@@ -126,11 +129,11 @@ impl Table {
                     }));
                 }
                 let count = rows.iter().map(|range| moves[range.clone()].iter().filter(|&&m| m).count()).collect();
-                let stretches = Stretch::of(&rows, &held_out, &moves);
+                let stretches = Stretch::of(&rows, &held_out, &before, &moves);
                 JointTable { y, x: Vec::new(), moving: moves, stretches, count }
             })
             .collect();
-        let mut table = Self { place: vec![Vec::new(); motions.dof], joints, rows, ..Self::default() };
+        let mut table = Self { place: vec![Vec::new(); motions.dof], joints, rows, before, ..Self::default() };
         table.add(motions, rigid, scales, terms, None);
         table
     }

@@ -192,6 +192,7 @@ impl Study {
             scales,
             span: motions.one_clock.then_some(span),
             times: &times,
+            has_change: motions.changed_at.is_some(),
             mass: &(0..motions.dof).map(mass).collect::<Vec<f64>>(),
             largest: &measure::largest(motions),
             needed: &measure::needed(motions, rigid),

@@ -64,7 +64,11 @@ impl Study {
         }
         for (joint, (ripples, waves)) in found.into_iter().enumerate() {
             for periods in ripples {
-                new.push((of(&TORQUE_RIPPLE), Some(joint), ripple_columns(joint, periods)));
+                let always = ripple_columns(joint, periods);
+                // A tooth that broke since the recordings from before.
+                let since = self.data.motions.changed_at.map(|at| always.iter().map(|term| term.since(at)).collect());
+                let forms = std::iter::once(always).chain(since);
+                new.extend(forms.map(|terms: Vec<Term>| (of(&TORQUE_RIPPLE), Some(joint), terms)));
             }
             for omega in waves {
                 new.push((of(&PERIODIC), Some(joint), periodic_columns(joint, omega)));

@@ -299,3 +299,54 @@ fn the_friction_of_another_day_is_no_change() {
         assert_eq!(!changes(&diagnosis).is_empty(), is_named, "{part}: {:?}", sentences(&diagnosis));
     }
 }
+
+/// One recording from before and one from after are enough to name a change.
+#[test]
+fn one_recording_on_each_side_shows_a_change() {
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        if is_after(motion) {
+            tau[ELBOW] += 3.0 * (motion.q[ELBOW] - 0.5);
+        }
+    };
+    let recorded = |variant| regular(&crate::support::recorded(&trio(), variant, 16.0, &injected));
+    let recordings = [recorded(0), recorded(2)];
+    let input =
+        |(number, recording)| Input { name: ["a", "b"][number], recording, held_out: false, before: number == 0 };
+    let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
+    let diagnosis = diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed");
+    let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
+    assert_eq!((effect, joint, found), ("spring", Some("elbow"), Change::Added));
+    let stiffness = finding.parameters["stiffness"].value;
+    assert!((stiffness / 3.0 - 1.0).abs() < 0.05, "{stiffness}");
+}
+
+/// Friction that falls as the drive warms up in each recording is a slow function of time. It is not the reason for a constant torque of the
+/// recordings from after the change.
+#[test]
+fn a_constant_torque_beside_slow_drifts_is_a_change() {
+    let diagnosis = with(&|motion, tau| {
+        baseline_friction(motion, tau);
+        let drift = 0.1 * (-motion.time / 5.0).exp() + 0.05 * (0.4 * motion.time).sin();
+        tau[ELBOW] += drift + if is_after(motion) { 1.0 } else { 0.0 };
+    });
+    let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
+    assert_eq!((effect, joint, found), ("torque_offset", Some("elbow"), Change::Added));
+    let offset = finding.parameters["offset"].value;
+    assert!((offset - 1.0).abs() < 0.15, "{offset}");
+}
+
+/// A ripple that began is a change: a tooth of the gear broke.
+#[test]
+fn a_ripple_that_began_is_found() {
+    let diagnosis = with(&|motion, tau| {
+        baseline_friction(motion, tau);
+        if is_after(motion) {
+            tau[SHOULDER] += 1.5 * (20.0 * motion.q[SHOULDER] + 0.6).sin();
+        }
+    });
+    let [(finding, effect, joint, found)] = changes(&diagnosis)[..] else { panic!("{:?}", sentences(&diagnosis)) };
+    assert_eq!((effect, joint, found), ("torque_ripple", Some("shoulder"), Change::Added));
+    let amplitude = finding.parameters["amplitude"].value;
+    assert!((amplitude / 1.5 - 1.0).abs() < 0.1, "{amplitude}");
+}

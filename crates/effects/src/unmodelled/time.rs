@@ -14,7 +14,14 @@ pub static TIME: Spec = Spec {
             for &(from, to) in grounds.times {
                 let count = ((to - from) / 4.0).ceil().clamp(2.0, 12.0) as usize;
                 let width = (to - from) / (count - 1) as f64;
-                moments.extend((0..count).map(|k| Term::on(&MOMENT, joint).sized([from + width * k as f64, width])));
+                let centre = |k: usize| from + width * k as f64;
+                // A constant torque of the recordings after a change is a torque offset, and no slow function of time.
+                if grounds.has_change {
+                    let within = |k: usize| Term::on(&MOMENT_WITHIN, joint).sized([centre(k), width, from, to]);
+                    moments.extend((1..count).map(within));
+                } else {
+                    moments.extend((0..count).map(|k| Term::on(&MOMENT, joint).sized([centre(k), width])));
+                }
             }
             Form::on(Turn::Past, joint, moments)
         };
@@ -33,6 +40,24 @@ static MOMENT: Law = Law {
             return Some(vec![0.0; motion.ticks()]);
         }
         motion.map(|k| tent(motion.time(k), centre, width))
+    },
+    ..Law::PLAIN
+};
+
+/// A tent function of time in one recording, less its mean there; sizes are its centre, half its width, and when the recording begins and
+/// ends (s).
+static MOMENT_WITHIN: Law = Law {
+    name: "moment within a recording",
+    column: |term, _, motion| {
+        let [centre, width, from, to] = term.sizes;
+        if motion.time(0) > to || motion.time(motion.ticks()) < from {
+            return Some(vec![0.0; motion.ticks()]);
+        }
+        // The tent is whole, or half of it is beyond the end.
+        let area = if centre + 0.5 * width > to { 0.5 * width } else { width };
+        let mean = area / (to - from);
+        let is_within = |time: f64| (from..=to).contains(&time);
+        motion.map(|k| if is_within(motion.time(k)) { tent(motion.time(k), centre, width) - mean } else { 0.0 })
     },
     ..Law::PLAIN
 };

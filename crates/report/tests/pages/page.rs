@@ -1,6 +1,6 @@
 //! The page is self-contained, escapes names, and can be made of any diagnosis.
 
-use diagnosis::Traces;
+use diagnosis::{Traces, Verdict};
 
 use crate::made_up::{self, Plot};
 
@@ -90,8 +90,22 @@ fn what_changed_comes_first() {
     let said =
         "Changed since the recordings from before: joint &lt;a&gt;: a spring, absent in the recordings from before.";
     assert!(first(Some(vec![new])).contains(said));
-    assert!(first(Some(Vec::new())).contains("Since the recordings from before, no change was found."));
+    assert!(first(Some(Vec::new())).contains("Since the recordings from before, no change was found.</p>"));
     assert!(!first(None).contains("Since the recordings"));
+}
+
+/// An unexplained residual may hide a change, and without enough data nothing can be compared.
+#[test]
+fn that_nothing_changed_is_said_as_far_as_it_would_show() {
+    let (mut report, traces, arm) = made_up::diagnosis(7, Plot::Rich);
+    report.changed = Some(Vec::new());
+    let open = report.unexplained[0].joint.clone();
+    report.unexplained.truncate(1);
+    let text = report::page(&report, &traces, &arm);
+    let expected = format!("no change was found. The unexplained residual on {open} may hide one.");
+    assert!(text.contains(&expected), "{expected}");
+    report.verdict = Verdict::NotEnoughData;
+    assert!(!report::page(&report, &traces, &arm).contains("no change was found"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::{Products, RIDGE, cholesky, solved};
 use crate::regression::table::{Stretch, Table};
-use crate::thresholds::RECORDING_GROUPS;
+use crate::thresholds::{RECORDING_GROUPS, STRETCHES};
 
 mod arm;
 
@@ -87,18 +87,27 @@ impl Products {
     }
 
     /// Groups of the recordings of a joint, or its stretches if there is only one. With `common`, the groups are the same on all
-    /// joints.
+    /// joints. A recording that is alone on its side of a change is divided: without it, nothing would show what changed.
     fn groups<'a>(&self, table: &'a Table, joint: usize, common: bool) -> Vec<Vec<&'a Stretch>> {
         let this = &table.joints[joint];
         let excited: Vec<usize> = self.recordings.iter().copied().filter(|&r| common || this.count[r] > 0).collect();
         let of = |recording: usize| this.stretches.iter().filter(move |stretch| stretch.recording == recording);
         if let [only] = excited[..] {
-            of(only).map(|stretch| vec![stretch]).collect()
-        } else {
-            let count = excited.len().min(RECORDING_GROUPS);
-            let fold = |k: usize| excited.iter().skip(k).step_by(count).flat_map(|&r| of(r)).collect();
-            (0..count).map(fold).collect()
+            return of(only).map(|stretch| vec![stretch]).collect();
         }
+        let is_before = |recording: usize| table.before.get(recording).is_some_and(|&before| before);
+        let is_alone = |r: usize| excited.iter().filter(|&&other| is_before(other) == is_before(r)).count() == 1;
+        let pieces = |&r: &usize| -> Vec<Vec<&'a Stretch>> {
+            if is_alone(r) {
+                (0..STRETCHES).map(|piece| of(r).skip(piece).step_by(STRETCHES).collect()).collect()
+            } else {
+                vec![of(r).collect()]
+            }
+        };
+        let pieces: Vec<Vec<&Stretch>> = excited.iter().flat_map(pieces).collect();
+        let count = pieces.len().min(RECORDING_GROUPS);
+        let fold = |k: usize| pieces.iter().skip(k).step_by(count).flatten().copied().collect();
+        (0..count).map(fold).collect()
     }
 }
 

@@ -30,15 +30,16 @@ fn runs(rows: &[usize]) -> Vec<Range<usize>> {
 
 impl Stretch {
     /// The stretches of a joint that is `moving` on some rows: the recordings, whose rows are `recordings`. If only one
-    /// training recording moves the joint, it is divided.
-    pub fn of(recordings: &[Range<usize>], held_out: &[bool], moving: &[bool]) -> Vec<Self> {
+    /// training recording moves the joint, or only one of those on its side of a change (`before`: those from before it), it is divided.
+    pub fn of(recordings: &[Range<usize>], held_out: &[bool], before: &[bool], moving: &[bool]) -> Vec<Self> {
         let rows_of = |range: &Range<usize>| -> Vec<usize> { range.clone().filter(|&row| moving[row]).collect() };
         let rows: Vec<Vec<usize>> = recordings.iter().map(rows_of).collect();
         let is_fitted = |r: &usize| !held_out[*r] && !rows[*r].is_empty();
-        let fitted = (0..rows.len()).filter(is_fitted).count();
+        let is_alone =
+            |r: usize| (0..rows.len()).filter(is_fitted).filter(|&other| before[other] == before[r]).count() == 1;
         let mut stretches = Vec::with_capacity(rows.len() + STRETCHES - 1);
         for (recording, rows) in rows.iter().enumerate() {
-            let pieces = if fitted == 1 && is_fitted(&recording) { STRETCHES } else { 1 };
+            let pieces = if is_fitted(&recording) && is_alone(recording) { STRETCHES } else { 1 };
             let length = rows.len().div_ceil(pieces).max(1);
             stretches.extend(rows.chunks(length).map(|rows| Self {
                 recording,
@@ -182,5 +183,26 @@ impl Gram {
         }
         sum.square = grams.fold(0.0, |square, gram| square + gram.square);
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A recording is divided if it is the only one that moves the joint on its side of a change: what changed then predicts parts to which it
+    /// was not fitted.
+    #[test]
+    fn a_recording_alone_on_its_side_is_divided() {
+        let recordings = [0..100, 100..200, 200..300];
+        let pieces = |before: [bool; 3], held_out: [bool; 3]| -> [usize; 3] {
+            let stretches = Stretch::of(&recordings, &held_out, &before, &[true; 300]);
+            [0, 1, 2].map(|recording| stretches.iter().filter(|stretch| stretch.recording == recording).count())
+        };
+        let fitted = [false; 3];
+        assert_eq!(pieces([false; 3], fitted), [1, 1, 1]);
+        assert_eq!(pieces([true, true, false], fitted), [1, 1, STRETCHES]);
+        assert_eq!(pieces([true, false, false], fitted), [STRETCHES, 1, 1]);
+        assert_eq!(pieces([true, false, false], [false, false, true]), [STRETCHES, STRETCHES, 1]);
     }
 }
