@@ -77,7 +77,8 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub model: Option<ModelKind>,
 
-    /// The training data of the model: scenarios, or recordings [default: the scenario's list]
+    /// The training data of the model: scenarios, or recordings with the columns qd_ and qdd_, as a run's recording.csv has them
+    /// [default: the scenario's list]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
     pub train: Option<Vec<String>>,
 
@@ -313,6 +314,11 @@ pub enum LengthScalesArg {
 }
 
 impl LengthScalesArg {
+    /// The name on the command line and in a scenario.
+    pub fn flag(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
     /// The training that this asks for.
     pub fn training_options(self) -> TrainingOptions {
         let lengths = match self {
