@@ -87,8 +87,8 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub length_scales: Option<LengthScalesArg>,
 
-    /// Whether the learned torque fades to the rigid-body model where its variance nears the prior's [default: the scenario's,
-    /// otherwise true]
+    /// Whether the learned torque fades to the rigid-body model where its variance nears the prior's or the mean square of its data
+    /// [default: the scenario's, otherwise true]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub fade: Option<bool>,
 
@@ -136,7 +136,7 @@ pub struct TransferArgs {
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', default_value = "taskA,taskB,taskC")]
     pub train: Vec<String>,
 
-    /// The scenario to test on, with the robot and its errors
+    /// The scenario to test on, with the robot and its errors; it may be one of the tasks
     #[arg(long, value_name = "NAME|FILE", default_value = "taskD")]
     pub test: String,
 
