@@ -54,7 +54,7 @@ fn a_loop_that_does_not_follow_says_so() {
         printed.contains("The loop does not follow its reference") && printed.contains("% saturated)"),
         "{printed}"
     );
-    assert!(printed.contains("joint6 (") && printed.contains("controller.kp"), "{printed}");
+    assert!(printed.contains("joint6 (") && printed.contains("controller.kp (N m/rad)"), "{printed}");
     sandbox.write("one.toml", &scenario(1.2, ""));
     let printed = sandbox.succeed(&run("--model rigid-body"));
     assert!(!printed.contains("does not follow"), "{printed}");
@@ -66,9 +66,9 @@ fn settings_of_training_scenarios_that_are_not_used_are_named() {
     sandbox.write("one.toml", &scenario(1.2, "[training]\nscenarios = [\"taskC\", \"own.toml\"]\n"));
     sandbox.write("own.toml", &scenario(1.3, "[plant]\ncoulomb_friction = 1\n[sensors]\ntorque_noise = 0.1\n"));
     let said = sandbox.noted(&run("--model hybrid"));
-    let expected =
-        "note: own.toml: its plant.coulomb_friction, sensors.torque_noise and model.inertia_scale is not that of one";
-    assert!(said.contains(expected) && !said.contains("taskC: its"), "{said}");
+    let expected = "note: own.toml: only its reference is used; plant, sensors and model are those of one, which differ in \
+                    plant.coulomb_friction, sensors.torque_noise and model.inertia_scale\n";
+    assert!(said.contains(expected) && !said.contains("taskC: only"), "{said}");
 }
 
 /// Files of a scenario are beside it, whatever the current folder is; names of scenarios remain names.

@@ -116,7 +116,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     }
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
-    text += &not_followed::remark(&scenario, &outcome);
+    text += &not_followed::remark(&scenario, kind, &outcome);
     if kind.learns() {
         text += &hardly_learned::remarks(&scenario, &errors, trained);
         text += &approximated(model.regressions());

@@ -148,10 +148,9 @@ pub fn unused_settings(scenario: &Scenario, sources: &[String], chain: &ChainArg
         let differ: Vec<&str> = differ.iter().filter(|(_, differs)| *differs).map(|(key, _)| *key).collect();
         if !differ.is_empty() {
             notes.push(format!(
-                "{source}: its {} is not that of {}, and not used: its reference is sampled on the plant and with the sensors of {}",
-                report::words::list(&differ),
+                "{source}: only its reference is used; plant, sensors and model are those of {}, which differ in {}",
                 scenario.name,
-                scenario.name
+                report::words::list(&differ)
             ));
         }
     }

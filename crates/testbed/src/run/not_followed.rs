@@ -2,7 +2,9 @@
 
 use arm::JointKind;
 use report::numbers::rounded;
+use torque::Feedback;
 
+use crate::models::ModelKind;
 use crate::scenario::Scenario;
 use crate::simulation::Outcome;
 
@@ -13,7 +15,7 @@ const AT_REST: f64 = 0.1;
 const STANDS_STILL: f64 = 1e-6;
 
 /// A sentence on the joints whose RMS tracking error exceeds the motion that they were to make; empty if there is none.
-pub fn remark(scenario: &Scenario, outcome: &Outcome) -> String {
+pub fn remark(scenario: &Scenario, kind: ModelKind, outcome: &Outcome) -> String {
     let joints = scenario.arm.joints().iter().enumerate();
     let joints: Vec<String> = joints
         .filter(|(joint, _)| exceeds(outcome.rms_error[*joint], outcome.reference_rms[*joint]))
@@ -31,10 +33,17 @@ pub fn remark(scenario: &Scenario, outcome: &Outcome) -> String {
     if joints.is_empty() {
         return String::new();
     }
+    let [kp, kd] = match scenario.feedback {
+        Feedback::MassMatrix { .. } => ["1/s²", "1/s"],
+        Feedback::Gains { .. } => ["N m/rad", "N m s/rad"],
+    };
+    let model = match kind {
+        ModelKind::True => "",
+        _ => "; --model true shows what the exact torque model gives",
+    };
     format!(
-        "The loop does not follow its reference: the RMS error is larger than the RMS of the motion itself on {}. Check controller.kp and \
-         controller.kd (with feedback = \"gains\" they are in N m/rad and N m s/rad), the effort limits of the URDF, and the torque model \
-         (--model true tracks with the exact one).\n",
+        "The loop does not follow its reference: the RMS error is larger than the RMS of the motion itself on {}. Check controller.kp \
+         ({kp}), controller.kd ({kd}), controller.rate and the effort limits of the URDF{model}.\n",
         report::words::list(&joints)
     )
 }
