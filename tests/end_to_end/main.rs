@@ -33,5 +33,6 @@ mod runs;
 mod schema;
 mod support;
 mod tidy;
+mod tracking;
 mod transfer;
 mod untrusted_names;

@@ -31,7 +31,7 @@ fn a_heavy_model_is_one_cause_and_its_correction_errs_by_rounding() {
     assert!(mean(&paper["diagnosed"]) < 1e-6, "{}", paper["diagnosed"]);
     assert_eq!(paper["is_rounding"], true);
     let others = paper["others"].as_array().expect("a list");
-    assert_eq!(others.len(), 5);
+    assert_eq!(others.len(), 6);
     assert!(others.iter().all(|model| mean(model) > 1e4 * mean(&paper["diagnosed"])));
 
     // A robot's logger knows no parts of the torque, and a URDF does not say what is wrong with it.

@@ -45,6 +45,14 @@ impl Sandbox {
         String::from_utf8(output.stdout).expect("the output is UTF-8")
     }
 
+    /// Runs the program, which must succeed; what it printed on standard error.
+    pub fn noted(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "testbed {arguments:?} failed: {stderr}");
+        stderr
+    }
+
     /// Runs the program, which must refuse; what it printed on standard error.
     pub fn refuse(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);

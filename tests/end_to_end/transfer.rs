@@ -39,4 +39,28 @@ fn what_cannot_be_compared_is_refused() {
     assert!(message.contains("--train names 1 task; 2 to 6"), "{message}");
     let message = Sandbox::new().refuse(&["transfer", "--model", "rigid-body"]);
     assert!(message.contains("not trained"), "{message}");
+    let message = Sandbox::new().refuse(&["transfer", "--train", "taskA,taskB,taskA"]);
+    assert!(message.contains("--train names taskA twice"), "{message}");
+}
+
+/// Two files of one name have their paths in the table, and an exact rigid body a dash, whose error nothing is divided by. A task that is
+/// also the scenario is tested where it is left out.
+#[test]
+fn files_of_one_name_are_told_apart_and_nothing_is_divided_by_zero() {
+    let sandbox = Sandbox::new();
+    let task = |frequency: f64| {
+        format!(
+            "robot = \"puma560\"\nduration = 0.5\n[reference]\namplitude = 0.5\nfrequency_1 = {frequency}\nfrequency_2 = 0.7\n"
+        )
+    };
+    for (folder, frequency) in [("a", 0.4), ("b", 0.9)] {
+        std::fs::create_dir(sandbox.path(folder)).expect("it can be made");
+        sandbox.write(&format!("{folder}/x.toml"), &task(frequency));
+    }
+    let asked = "transfer --train a/x.toml,b/x.toml --test a/x.toml --model hybrid --json t.json --samples samples";
+    let printed = sandbox.succeed(&words(asked));
+    assert!(printed.contains("a/x.toml   b/x.toml") && printed.contains('–'), "{printed}");
+    assert!(!printed.contains("inf") && !printed.contains("NaN"), "{printed}");
+    assert_eq!(sandbox.list("samples"), ["a-x.toml.csv", "b-x.toml.csv"]);
+    assert_eq!(sandbox.json("t.json")["rows"].as_array().map(Vec::len), Some(2));
 }

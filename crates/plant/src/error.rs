@@ -60,7 +60,7 @@ pub enum PlantError {
         joint: String,
     },
     /// A position, velocity or torque is not finite, or a joint is faster than any robot's.
-    #[error("joint \"{joint}\" at {time} s: its motion or torque has left all bounds")]
+    #[error("joint \"{joint}\" at {time:.3} s: its motion or torque has left all bounds")]
     Diverged {
         /// The first such joint's name.
         joint: String,

@@ -46,7 +46,7 @@ def test_the_regressions_are_scikit_learns(length_scales):
         assert abs(found["log_marginal_likelihood"] - reference.log_marginal_likelihood_value_) < 1e-3
 
 
-@pytest.mark.parametrize("inputs", ["newton-euler-12", "newton-euler-13", "joint-motion"])
+@pytest.mark.parametrize("inputs", ["newton-euler-12", "newton-euler-13", "newton-euler-own-frame", "joint-motion"])
 def test_learning_explains_what_the_model_omits(inputs):
     X, y, _ = samples(1)
     Z, there, rigid = samples(2, 60)

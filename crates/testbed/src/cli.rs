@@ -77,7 +77,8 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub model: Option<ModelKind>,
 
-    /// The training data of the model: scenarios, or recordings [default: the scenario's list]
+    /// The training data of the model: scenarios, or recordings with the columns qd_ and qdd_, as a run's recording.csv has them
+    /// [default: the scenario's list]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
     pub train: Option<Vec<String>>,
 
@@ -86,8 +87,8 @@ pub struct RunArgs {
     #[arg(long, value_enum)]
     pub length_scales: Option<LengthScalesArg>,
 
-    /// Whether the learned torque fades to the rigid-body model where its variance nears the prior's [default: the scenario's,
-    /// otherwise true]
+    /// Whether the learned torque fades to the rigid-body model where its variance nears the prior's or the mean square of its data
+    /// [default: the scenario's, otherwise true]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub fade: Option<bool>,
 
@@ -135,7 +136,7 @@ pub struct TransferArgs {
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', default_value = "taskA,taskB,taskC")]
     pub train: Vec<String>,
 
-    /// The scenario to test on, with the robot and its errors
+    /// The scenario to test on, with the robot and its errors; it may be one of the tasks
     #[arg(long, value_name = "NAME|FILE", default_value = "taskD")]
     pub test: String,
 
@@ -313,6 +314,11 @@ pub enum LengthScalesArg {
 }
 
 impl LengthScalesArg {
+    /// The name on the command line and in a scenario.
+    pub fn flag(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
     /// The training that this asks for.
     pub fn training_options(self) -> TrainingOptions {
         let lengths = match self {

@@ -3,15 +3,17 @@
 mod fitted;
 mod folder;
 mod hardly_learned;
+mod not_followed;
+mod notes;
 mod observers;
+mod summary;
+mod torque_errors;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use report::numbers::rounded;
 use report::terminal::table;
-use serde::Serialize;
-use torque::{Samples, TorqueModel};
 
 use crate::cli::{ChainArgs, RunArgs};
 use crate::interrupt;
@@ -19,47 +21,14 @@ use crate::models::ModelKind;
 use crate::output::{self, OutputFile};
 use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
-use crate::simulation::{self, Observer, Outcome, Tracking, Weight};
+use crate::simulation::{self, Observer, Outcome, Tracking};
 use crate::training;
 use crate::written::Written;
-use fitted::{Energies, Regression, approximated, energies, regression};
+use fitted::{approximated, energies, regression};
 use folder::RunFolder;
 use observers::{Simulating, View};
-
-/// The number of samples from which a note announces a long training.
-const MANY_SAMPLES: usize = 8000;
-
-/// The content of a run's summary.json.
-#[derive(Serialize)]
-struct Summary<'a> {
-    schema: &'static str,
-    scenario: &'a str,
-    robot: &'a str,
-    joints: Vec<&'a str>,
-    train: &'a [String],
-    seed: u64,
-    tracking: [Tracking; 1],
-    /// Mean squared error of the model's torque on the reference, (N m)².
-    torque_mse: Vec<f64>,
-    /// Share of the control steps in which the effort limit cut the torque.
-    saturated: Vec<f64>,
-    real_time_factor: f64,
-    control_step_us: Percentiles,
-    /// The weights of the learned torques, one per joint; absent if they do not fade.
-    #[serde(skip_serializing_if = "<[Weight]>::is_empty")]
-    fade_weights: &'a [Weight],
-    /// The regressions of the model, one per joint; empty if it does not learn.
-    regressions: Vec<Regression>,
-    /// The regression of all joints by energies; absent if the model has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    energies: Option<Energies<'a>>,
-}
-
-#[derive(Serialize)]
-struct Percentiles {
-    median: f64,
-    p99: f64,
-}
+use summary::{Percentiles, Settings, Summary};
+use torque_errors::TorqueErrors;
 
 /// Runs the scenario of `args`, with the arm that `chain` selects.
 ///
@@ -80,7 +49,10 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     let out = args.out.as_deref();
     check_outputs(args, &scenario, &sources)?;
     let samples = training::training_samples(&scenario, &sources, chain, args.seed)?;
-    notes(args, kind, &scenario, &samples);
+    notes::print(args, kind, &scenario, &sources, samples.len());
+    for note in training::unused_settings(&scenario, &sources, chain)? {
+        output::say(format_args!("note: {note}"));
+    }
 
     let length_scales = args.length_scales.unwrap_or(scenario.length_scales);
     let mut options = length_scales.training_options();
@@ -111,6 +83,8 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     progress.finish();
     let outcome = outcome?;
 
+    let errors = TorqueErrors::new(&scenario, kind, model.as_ref())?;
+    let trained = kind.has_length_scales().then_some(length_scales);
     let summary = Summary {
         schema: "testbed.run/1",
         scenario: &scenario.name,
@@ -119,7 +93,8 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         train: &sources,
         seed: args.seed,
         tracking: [Tracking::new(kind, &outcome)],
-        torque_mse: torque_error(&scenario, model.as_ref())?,
+        settings: Settings::new(&scenario, kind, trained, samples.len()),
+        torque_mse: errors.fed_forward.clone(),
         saturated: outcome.saturated.clone(),
         real_time_factor: outcome.real_time_factor,
         fade_weights: &outcome.weights,
@@ -141,9 +116,9 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
     }
     drop(deferred);
     let mut text = text(&scenario, kind, &sources, &summary, &outcome);
+    text += &not_followed::remark(&scenario, kind, &outcome);
     if kind.learns() {
-        let length_scales = kind.has_length_scales().then_some(length_scales);
-        text += &hardly_learned::remarks(&scenario, &summary.torque_mse, length_scales)?;
+        text += &hardly_learned::remarks(&scenario, &errors, trained);
         text += &approximated(model.regressions());
     }
     text += &written.lines();
@@ -179,54 +154,6 @@ fn check_outputs(args: &RunArgs, scenario: &Scenario, sources: &[String]) -> any
         .try_for_each(|file| file.check())
 }
 
-/// The mean squared error of the model's torque on the reference, one per joint ((N m)² or N²), as in the paper.
-fn torque_error(scenario: &Scenario, model: &dyn TorqueModel) -> anyhow::Result<Vec<f64>> {
-    Ok(model.mean_squared_error(&training::own_samples(scenario)?))
-}
-
-/// Prints notes on doubtful arguments, and on the robot and the reference.
-fn notes(args: &RunArgs, kind: ModelKind, scenario: &Scenario, samples: &Samples) {
-    for note in &scenario.notes {
-        output::say(format_args!("note: {note}"));
-    }
-    if args.train.is_some() && !kind.learns() {
-        eprintln!("note: the model \"{}\" is not trained; --train is ignored", kind.flag());
-    }
-    if args.length_scales.is_some() && !kind.has_length_scales() {
-        eprintln!("note: the model \"{}\" has no length scales; --length-scales is ignored", kind.flag());
-    }
-    if samples.len() > MANY_SAMPLES && args.inducing.is_none() && kind.has_length_scales() {
-        eprintln!(
-            "note: training on {} samples may take minutes; --inducing 200 or a lower reference.sample_rate shortens it",
-            samples.len()
-        );
-    }
-    let mut motion = torque::Motion::new(scenario.arm.dof());
-    let mut outside = vec![false; scenario.arm.dof()];
-    for time in scenario.sample_times() {
-        scenario.reference.at(time, &mut motion);
-        for (joint, outside) in scenario.arm.joints().iter().zip(&mut outside).enumerate() {
-            let q = motion.q[joint];
-            let limits = outside.0.limits;
-            *outside.1 |= q < limits.lower || q > limits.upper;
-        }
-    }
-    let names: Vec<&str> = scenario
-        .arm
-        .joints()
-        .iter()
-        .zip(&outside)
-        .filter(|(_, outside)| **outside)
-        .map(|(joint, _)| joint.name.as_str())
-        .collect();
-    if !names.is_empty() {
-        output::say(format_args!(
-            "note: the reference exceeds the position limits of {}; the plant does not enforce them",
-            names.join(", ")
-        ));
-    }
-}
-
 /// A sentence on the joints whose learned torque was faded.
 fn faded(scenario: &Scenario, outcome: &Outcome) -> String {
     let joints = scenario.arm.joints().iter().zip(&outcome.weights);
@@ -248,10 +175,10 @@ fn faded(scenario: &Scenario, outcome: &Outcome) -> String {
 fn text(scenario: &Scenario, kind: ModelKind, sources: &[String], summary: &Summary<'_>, outcome: &Outcome) -> String {
     let trained = if sources.is_empty() { String::new() } else { format!(", trained on {}", sources.join(", ")) };
     let mut text = format!(
-        "{}: {} ({} joints), {} s at {} Hz under the model \"{}\"{trained}\n",
+        "{}: {} ({}), {} s at {} Hz under the model \"{}\"{trained}\n",
         scenario.title,
         scenario.arm.name(),
-        scenario.arm.dof(),
+        if scenario.arm.dof() == 1 { "1 joint".to_owned() } else { format!("{} joints", scenario.arm.dof()) },
         scenario.duration,
         scenario.control_rate,
         kind.flag()

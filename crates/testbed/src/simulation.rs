@@ -40,6 +40,8 @@ pub struct Outcome {
     pub rms_error: Vec<f64>,
     /// Largest tracking error, one per joint (rad or m).
     pub max_error: Vec<f64>,
+    /// Root mean square of the reference's deviation from its own mean, one per joint (rad or m).
+    pub reference_rms: Vec<f64>,
     /// Share of the steps in which the effort limit cut the torque, one per joint.
     pub saturated: Vec<f64>,
     /// The weights of the learned torque, one per joint; empty if it does not fade.
@@ -331,6 +333,11 @@ impl Log {
         let rms = |error: &Vec<f64>| (error.iter().map(|e| e * e).sum::<f64>() / steps).sqrt();
         let max = |error: &Vec<f64>| error.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
         let (rms_error, max_error) = (errors.iter().map(rms).collect(), errors.iter().map(max).collect());
+        let deviations = |reference: &Vec<f64>| {
+            let mean = reference.iter().sum::<f64>() / steps;
+            rms(&reference.iter().map(|r| r - mean).collect())
+        };
+        let reference_rms = self.reference.iter().map(deviations).collect();
         let parts = [
             ("reference", self.reference),
             ("tau_rigid", self.rigid),
@@ -353,6 +360,7 @@ impl Log {
             weights: self.weights.iter().map(mean).collect(),
             rms_error,
             max_error,
+            reference_rms,
             saturated: self.saturated.iter().map(|count| *count as f64 / steps).collect(),
             real_time_factor,
             control_step_median: percentile(0.5),

@@ -165,13 +165,14 @@ fn short(task: &str) -> String {
 
 /// The tables as text for the terminal.
 fn text(results: &Tables) -> String {
-    let header = |first: &str, last: &str| {
+    let header = |first: &str, last: &[&str]| {
         let joints = (1..=6).map(|joint| format!("joint {joint}"));
-        let cells: Vec<String> = [first.to_owned()].into_iter().chain(joints).chain([last.to_owned()]).collect();
+        let last = last.iter().map(|last| (*last).to_owned());
+        let cells: Vec<String> = [first.to_owned()].into_iter().chain(joints).chain(last).collect();
         report::terminal::table(cells)
     };
-    let numbers = |values: &[f64], last: f64| -> Vec<String> {
-        values.iter().chain([&last]).map(|value| rounded(*value, 3)).collect()
+    let numbers = |values: &[f64], last: &[f64]| -> Vec<String> {
+        values.iter().chain(last).map(|value| rounded(*value, 3)).collect()
     };
     let mut text = String::new();
     for (table, number) in results.tables.iter().zip(["I", "II"]) {
@@ -180,25 +181,27 @@ fn text(results: &Tables) -> String {
             table.test,
             table.train.join(", ")
         );
-        let mut printed = header("model", "mean");
+        let mut printed = header("model", &["mean"]);
         for row in &table.rows {
             let mut cells = vec![row.model.title().to_owned()];
-            cells.extend(numbers(&row.mse, row.mean));
+            cells.extend(numbers(&row.mse, &[row.mean]));
             printed.add_row(cells);
             if let Some(paper) = row.paper {
                 let mut cells = vec!["  the paper's".to_owned()];
-                cells.extend(numbers(&paper, paper.iter().sum::<f64>() / 6.0));
+                cells.extend(numbers(&paper, &[mean(&paper)]));
                 printed.add_row(cells);
             }
         }
         text += &format!("{printed}\n\n");
     }
-    text += "Figure 4: RMS tracking error on task D in the closed loop after A, B, C, mrad\n";
-    let mut printed = header("model", "1 to 3");
+    text += "Figure 4: RMS tracking error on task D in the closed loop after A, B, C, mrad (last two: mean of joints \
+             1 to 3, root mean square of all)\n";
+    let mut printed = header("model", &["1 to 3", "all"]);
     for row in &results.tracking {
         let errors: Vec<f64> = row.rms_error_rad.iter().map(|rad| rad * 1e3).collect();
         let mut cells = vec![row.model.title().to_owned()];
-        cells.extend(numbers(&errors, errors[..3].iter().sum::<f64>() / 3.0));
+        let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
+        cells.extend(numbers(&errors, &[mean(&errors[..3]), mean(&squares).sqrt()]));
         printed.add_row(cells);
     }
     text + &format!("{printed}\n")

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use anyhow::{Context, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use arm::Arm;
-use recording::Recording;
+use recording::{Recording, RecordingError};
 use torque::{Motion, Reference, Samples};
 
 use crate::cli::ChainArgs;
@@ -106,10 +106,8 @@ pub fn training_samples(
     let mut sensors = Sensors::new(&scenario.sensor_noise, seed, TRAINING_STREAM);
     for source in sources {
         let of_source = || format!("training on {source}");
-        let path = Path::new(source);
-        let ends = |end: &str| path.extension().is_some_and(|extension| extension == end);
-        if ends("csv") || (path.exists() && !ends("toml")) {
-            let recording = named::read(path, None, Some(&scenario.arm)).context("training")?;
+        if is_recording(source) {
+            let recording = read_recording(Path::new(source), &scenario.arm).context("training")?;
             recording_samples(scenario, &recording, &mut samples).with_context(of_source)?;
         } else {
             let task = Scenario::load_chain(source, chain).context("training")?;
@@ -118,6 +116,58 @@ pub fn training_samples(
         }
     }
     Ok(samples)
+}
+
+/// Whether the training data `source` are a recording, and not a scenario.
+pub fn is_recording(source: &str) -> bool {
+    let path = Path::new(source);
+    let ends = |end: &str| path.extension().is_some_and(|extension| extension == end);
+    ends("csv") || (path.exists() && !ends("toml"))
+}
+
+/// Settings of the scenarios among `sources` that differ from those of `scenario` and have no effect, a sentence for each scenario: its
+/// reference is sampled on the plant of `scenario`.
+///
+/// # Errors
+/// If a scenario cannot be read.
+pub fn unused_settings(scenario: &Scenario, sources: &[String], chain: &ChainArgs) -> anyhow::Result<Vec<String>> {
+    let mut notes = Vec::new();
+    for source in sources.iter().filter(|source| !is_recording(source)) {
+        let task = Scenario::load_chain(source, chain)?;
+        let own = |own: &[f64], used: &[f64]| own != used && own.iter().any(|value| *value != 0.0);
+        let (noise, used) = (&task.sensor_noise, &scenario.sensor_noise);
+        let differ = [
+            ("robot or plant.rotor_inertia", task.arm.joints() != scenario.arm.joints()),
+            ("plant.viscous_friction", own(&task.viscous_friction, &scenario.viscous_friction)),
+            ("plant.coulomb_friction", own(&task.coulomb_friction, &scenario.coulomb_friction)),
+            ("sensors.position_noise", own(&noise.position, &used.position)),
+            ("sensors.velocity_noise", own(&noise.velocity, &used.velocity)),
+            ("sensors.torque_noise", own(&noise.torque, &used.torque)),
+            ("model.inertia_scale", task.inertia_scale != 1.0 && task.inertia_scale != scenario.inertia_scale),
+        ];
+        let differ: Vec<&str> = differ.iter().filter(|(_, differs)| *differs).map(|(key, _)| *key).collect();
+        if !differ.is_empty() {
+            notes.push(format!(
+                "{source}: only its reference is used; plant, sensors and model are those of {}, which differ in {}",
+                scenario.name,
+                report::words::list(&differ)
+            ));
+        }
+    }
+    Ok(notes)
+}
+
+/// Reads a recording to train on. There is no column map here, so that none is proposed for another header.
+fn read_recording(path: &Path, arm: &Arm) -> anyhow::Result<Recording> {
+    named::read(path, None, Some(arm)).map_err(|error| match error {
+        RecordingError::Header { path, has_lines, .. } => anyhow!(
+            "{}{}: its columns are not those of a recording to train on: t (s), and for every joint q_<joint>, qd_<joint>, \
+             qdd_<joint> (rad, rad/s, rad/s²) and tau_<joint> (N m); name them so (`testbed inspect FILE` says what is missing)",
+            path.display(),
+            if has_lines { ":1" } else { "" }
+        ),
+        other => other.into(),
+    })
 }
 
 fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut Samples) -> anyhow::Result<()> {
@@ -134,9 +184,14 @@ fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut S
         order.push(index);
     }
     let (Some(qd), Some(qdd)) = (&recording.qd, &recording.qdd) else {
-        anyhow::bail!(
-            "it lacks qd_<joint> (rad/s) or qdd_<joint> (rad/s²) columns, which training needs; \
-             a run's recording.csv has them"
+        let lacks = match (&recording.qd, &recording.qdd) {
+            (None, None) => "qd_<joint> (rad/s) and qdd_<joint> (rad/s²)",
+            (None, Some(_)) => "qd_<joint> (rad/s)",
+            _ => "qdd_<joint> (rad/s²)",
+        };
+        bail!(
+            "it lacks the columns {lacks}, which training needs; a run's recording.csv has them, and for a robot's recording they are \
+             the central differences of positions that a low-pass filter without phase shift has passed, as the torques must, too"
         );
     };
     let mut next = f64::NEG_INFINITY;

@@ -1,9 +1,8 @@
 //! `testbed transfer`: the errors of models on tasks that they were not trained on, predicted and measured.
 
+mod labels;
 mod samples_file;
 mod words;
-
-use std::path::Path;
 
 use anyhow::{Context, ensure};
 use rayon::prelude::*;
@@ -16,6 +15,7 @@ use crate::output::{self, OutputFile};
 use crate::progress::{Pieces, Progress};
 use crate::scenario::Scenario;
 use crate::training;
+use labels::Labels;
 
 /// More tasks would make more than a hundred training sets.
 const MOST_TASKS: usize = 6;
@@ -35,6 +35,9 @@ const NOTABLE: f64 = 0.01;
 pub struct Transfer {
     schema: &'static str,
     model: ModelKind,
+    /// The tasks with their short names.
+    #[serde(skip)]
+    labels: Labels,
     joints: Vec<String>,
     rows: Vec<Row>,
     /// Tasks whose data make the error on another task larger.
@@ -106,6 +109,12 @@ pub fn run(args: &TransferArgs) -> anyhow::Result<()> {
         "the model \"{}\" is not trained; give --model hybrid, independent-joint, …",
         args.model.flag()
     );
+    for (index, task) in args.train.iter().enumerate() {
+        ensure!(
+            !args.train[..index].iter().any(|other| is_same(other, task)),
+            "--train names {task} twice; give each task once"
+        );
+    }
     let progress = Progress::new("training on every set of tasks");
     let transfer = compare(args, &progress)?;
     progress.finish();
@@ -119,12 +128,19 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
     let scenario = Scenario::load(&args.test)?;
     let chain = ChainArgs::default();
     let mut tasks = args.train.clone();
-    tasks.push(args.test.clone());
+    // The scenario may be one of the tasks, which are all tested when they are left out.
+    if !tasks.iter().any(|task| is_same(task, &args.test)) {
+        tasks.push(args.test.clone());
+    }
+    let labels = Labels::new(&tasks);
+    for note in training::unused_settings(&scenario, &tasks, &chain)? {
+        output::say(format_args!("note: {note}"));
+    }
     let samples_of = |names: &[String]| training::training_samples(&scenario, names, &chain, 0);
     let tests: Vec<Samples> =
         tasks.iter().map(|task| samples_of(std::slice::from_ref(task))).collect::<anyhow::Result<_>>()?;
     if let Some(folder) = &args.samples {
-        samples_file::write(folder, &scenario, &tasks, &tests)?;
+        samples_file::write(folder, &scenario, &labels.files(), &tests)?;
     }
     let rigid = ModelKind::RigidBody.build(
         &scenario.arm,
@@ -156,12 +172,7 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
     let rows: Vec<Row> = rows.into_iter().flatten().collect();
     let joints: Vec<String> = scenario.arm.joints().iter().map(|joint| joint.name.clone()).collect();
     let correlation = |value: fn(&Row, usize) -> f64| -> Vec<f64> {
-        let of = |joint: usize, value: fn(&Row, usize) -> f64| rows.iter().map(|row| value(row, joint)).collect();
-        (0..joints.len())
-            .map(|joint| {
-                rank_correlation(of(joint, value), of(joint, |row, joint| row.error[joint] / row.rigid[joint]))
-            })
-            .collect()
+        (0..joints.len()).map(|joint| correlation(&rows, joint, value)).collect()
     };
     Ok(Transfer {
         schema: "testbed.transfer/1",
@@ -173,7 +184,21 @@ fn compare(args: &TransferArgs, progress: &Progress) -> anyhow::Result<Transfer>
         },
         joints,
         rows,
+        labels,
     })
+}
+
+/// The rank correlation of `value` with the error of `joint` relative to that of the rigid body, over the rows in which the rigid body
+/// has an error. NaN without an order.
+fn correlation(rows: &[Row], joint: usize, value: fn(&Row, usize) -> f64) -> f64 {
+    let rows = rows.iter().filter(|row| row.rigid[joint] > 0.0);
+    let (values, errors) = rows.map(|row| (value(row, joint), row.error[joint] / row.rigid[joint])).unzip();
+    rank_correlation(values, errors)
+}
+
+/// Whether two tasks are the same name or file.
+fn is_same(a: &str, b: &str) -> bool {
+    a == b || std::path::absolute(a).is_ok_and(|a| std::path::absolute(b).is_ok_and(|b| a == b))
 }
 
 /// Error and predictions of `model`, trained on `train`, on the samples of `test`.
@@ -249,12 +274,6 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     values.iter().map(|&value| below(value) + (equal(value) - 1.0) / 2.0).collect()
 }
 
-/// The file's name without its folder and "task".
-fn short(task: &str) -> String {
-    let name = Path::new(task).file_stem().map_or(task.into(), |stem| stem.to_string_lossy());
-    name.trim_start_matches("task").to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -288,5 +307,24 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].added.as_str(), found[0].train.join(",").as_str()), ("B", "A"));
         assert!(found[0].likelihood_fell && !found[0].predicted_rose);
+    }
+    /// Where the rigid body is exact, the error has no relative size, and takes part in no order.
+    #[test]
+    fn rows_without_an_error_of_the_rigid_body_are_in_no_correlation() {
+        let exact = Row { rigid: vec![0.0], ..made(&["B"], "A", 0.9, 0.01, 0.0) };
+        let rows = [
+            made(&["A"], "D", 0.2, 0.2, 1.0),
+            made(&["B"], "D", 0.5, 0.3, 0.5),
+            made(&["C"], "D", 0.6, 0.4, 0.5),
+            exact,
+        ];
+        let predicted = |row: &Row, joint: usize| row.predicted[joint];
+        assert!((correlation(&rows, 0, predicted) - 1.0).abs() < 1e-12);
+        assert!(correlation(&rows[3..], 0, predicted).is_nan());
+    }
+
+    #[test]
+    fn the_same_task_is_recognised() {
+        assert!(is_same("taskA", "taskA") && is_same("a/b.csv", "./a/b.csv") && !is_same("a/b.csv", "c/b.csv"));
     }
 }

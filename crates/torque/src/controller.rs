@@ -3,6 +3,7 @@
 use arm::{Arm, DMatrix};
 
 use crate::error::TorqueError;
+use crate::fading::Fading;
 use crate::model::{Prediction, TorqueModel, Workspace};
 
 /// The feedback of position and velocity errors; one gain per joint.
@@ -63,16 +64,6 @@ pub struct Controller<'a> {
     fade: Option<Fading>,
 }
 
-/// The weights of the learned torques.
-struct Fading {
-    /// One weight per joint.
-    weights: Vec<f64>,
-    /// The joint whose weight is renewed next; none before the first step, which computes all.
-    due: Option<usize>,
-    /// The torque of the rigid body, for a model without a rigid-body part.
-    rigid: Vec<f64>,
-}
-
 impl<'a> Controller<'a> {
     /// A controller with the feed-forward of `model`; the mass matrix and the effort limits are those of `arm`.
     ///
@@ -112,8 +103,7 @@ impl<'a> Controller<'a> {
     /// not fade.
     #[must_use]
     pub fn fading(mut self) -> Self {
-        let dof = self.arm.dof();
-        self.fade = Some(Fading { weights: vec![1.0; dof], due: None, rigid: vec![0.0; dof] });
+        self.fade = Some(Fading::new(self.arm.dof()));
         self
     }
 
@@ -130,24 +120,10 @@ impl<'a> Controller<'a> {
     pub fn feed_forward(&mut self, q: &[f64], qd: &[f64], qdd: &[f64], command: &mut Command) {
         self.model.predict(&mut self.workspace, q, qd, qdd, &mut command.feedforward);
         if let Some(fade) = &mut self.fade {
-            let dof = self.arm.dof();
-            let due = fade.due.map_or(0..dof, |joint| joint..joint + 1);
-            fade.due = Some(fade.due.map_or(0, |joint| (joint + 1) % dof));
-            for joint in due {
-                if let Some(weight) = self.model.weight(&mut self.workspace, joint) {
-                    fade.weights[joint] = weight;
-                }
-            }
-            let stands_alone = self.model.stands_alone();
-            if stands_alone {
-                self.arm.inverse_dynamics(&mut self.arm_workspace, q, qd, qdd, &mut fade.rigid);
-            }
-            for (joint, weight) in fade.weights.iter().enumerate() {
-                command.feedforward.learned[joint] *= weight;
-                if stands_alone {
-                    command.feedforward.rigid[joint] = (1.0 - weight) * fade.rigid[joint];
-                }
-            }
+            let due = fade.due();
+            fade.renew(self.model, &mut self.workspace, due);
+            let arm = (&self.arm, &mut self.arm_workspace);
+            fade.apply(self.model, arm, [q, qd, qdd], &mut command.feedforward);
         }
     }
 

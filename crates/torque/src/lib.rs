@@ -28,6 +28,7 @@
 mod controller;
 mod corrected;
 mod error;
+mod fading;
 mod inputs;
 mod lagrangian;
 mod learned;
@@ -41,6 +42,7 @@ mod summed;
 pub use controller::{Command, Controller, Feedback};
 pub use corrected::Corrected;
 pub use error::TorqueError;
+pub use fading::faded_squared_error;
 pub use gp::{
     Conditioning, Gp, LagrangianConditioning, LagrangianGp, LagrangianOptions, LagrangianPrior, LengthScales, Lengths,
 };

@@ -6,7 +6,7 @@ use arm::{Arm, DMatrix};
 use support::{motion, puma560, samples, samples_of};
 use torque::{
     Command, Controller, Feedback, Inputs, Lagrangian, LagrangianOptions, Learned, Prediction, RigidBody, Samples,
-    TorqueError, TorqueModel, TrainingOptions, Workspace,
+    TorqueError, TorqueModel, TrainingOptions, Workspace, faded_squared_error,
 };
 
 fn nominal() -> Arm {
@@ -240,6 +240,20 @@ fn a_learned_torque_fades_where_it_knows_nothing() {
                     assert!(joint > 2 || weight < 1e-6, "{weights:?}");
                 }
             }
+        }
+        // The torque that is fed forward has the error of the model along the training motion, and of the rigid body far from it.
+        let far = samples_of(50, |time| {
+            let [q, qd, qdd] = motion(time, 0);
+            [q, qd.iter().map(|v| 100.0 * v).collect(), qdd.iter().map(|a| 1e4 * a).collect()]
+        });
+        let (faded, full) = (faded_squared_error(&model, &nominal(), &far), model.mean_squared_error(&far));
+        let below = rigid.mean_squared_error(&far);
+        let known = faded_squared_error(&model, &nominal(), &train);
+        for joint in 0..3 {
+            assert!((faded[joint] / below[joint] - 1.0).abs() < 1e-3, "{faded:?} {below:?}");
+            // A regression of the residual returns to the rigid body by itself.
+            assert!(!model.stands_alone() || (full[joint] / below[joint] - 1.0).abs() > 1e-2, "{full:?} {below:?}");
+            assert!(known[joint] < 1e-3 * rigid.mean_squared_error(&train)[joint], "{known:?}");
         }
     }
 }

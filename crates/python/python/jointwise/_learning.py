@@ -34,7 +34,8 @@ class IndependentJointLearning(RegressorMixin, BaseEstimator):  # type: ignore[m
     ----------
     urdf: The robot's URDF, or the name of a robot that comes with testbed.
     inputs: What the processes learn from. `"newton-euler-12"`: ω, ω̇ of the link, and moment and force on the next link,
-        of the rigid-body model (the paper's); `"newton-euler-13"`: and its torque, too; `"joint-motion"`: q, q̇, q̈ of all joints.
+        of the rigid-body model (the paper's); `"newton-euler-13"`: and its torque, too; `"newton-euler-own-frame"`: the 12, with
+        moment and force in the frame of the link instead of the next one; `"joint-motion"`: q, q̇, q̈ of all joints.
     length_scales: `"per-input"`, or `"single"` for the paper's one length scale.
     base, tip, lock: Which of the robot's joints are the arm, as for :class:`InverseDynamics`.
     starts: Starts of the likelihood search.
@@ -51,7 +52,9 @@ class IndependentJointLearning(RegressorMixin, BaseEstimator):  # type: ignore[m
         self,
         urdf: Union[str, os.PathLike[str]],
         *,
-        inputs: Literal["newton-euler-12", "newton-euler-13", "joint-motion"] = "newton-euler-13",
+        inputs: Literal[
+            "newton-euler-12", "newton-euler-13", "newton-euler-own-frame", "joint-motion"
+        ] = "newton-euler-13",
         length_scales: Literal["per-input", "single"] = "per-input",
         base: Optional[str] = None,
         tip: Optional[str] = None,

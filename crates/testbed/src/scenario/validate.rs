@@ -12,6 +12,7 @@ use torque::{Fade, Feedback, Reference, Sine};
 use super::Scenario;
 use super::raw::{PerJoint, RawReference, RawScenario};
 use crate::cli::{ChainArgs, LengthScalesArg};
+use crate::library;
 use crate::models::ModelKind;
 use crate::sensors::SensorNoise;
 
@@ -39,8 +40,8 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
         let place = source.place(raw.robot.span());
         format!("{place}: robot")
     };
-    let robot =
-        robot::find_robot(raw.robot.get_ref(), source.path.parent().unwrap_or(Path::new(""))).with_context(of_robot)?;
+    let folder = source.path.parent().unwrap_or(Path::new(""));
+    let robot = robot::find_robot(raw.robot.get_ref(), folder).with_context(of_robot)?;
     let written = ChainArgs { base: raw.chain.base, tip: raw.chain.tip, lock: raw.chain.lock.into_iter().collect() };
     let chain = if flags.is_given() { flags } else { &written };
     let arm = robot.arm(&chain.options(&[])).with_context(of_robot)?;
@@ -134,12 +135,22 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
         sample_rate,
         control_rate,
         feedback,
-        training: raw.training.scenarios,
+        training: raw.training.scenarios.iter().map(|written| training_source(written, folder)).collect(),
         viscous_friction,
         coulomb_friction,
         notes,
         sensor_noise,
     })
+}
+
+/// Training data as they are found from the current folder. Files are relative to the scenario's `folder`, as the robot is; the name of
+/// a scenario remains a name.
+fn training_source(written: &str, folder: &Path) -> String {
+    let path = Path::new(written);
+    let beside = folder.join(path);
+    let is_name = path.components().count() == 1 && path.extension().is_none();
+    let is_file = !is_name || (library::built_in_scenario(written).is_none() && beside.exists());
+    if is_file { beside.display().to_string() } else { written.to_owned() }
 }
 
 struct Check<'a> {
