@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use diagnosis::{Parameter, RecordingNames, Report, late};
+use diagnosis::{Parameter, RecordingNames, Report, Verdict, late};
 
 use crate::numbers;
-use crate::words::list;
+use crate::words::{list, remaining};
 
 /// The most recordings whose names a sentence lists.
 const NAMED_RECORDINGS: usize = 4;
@@ -53,7 +53,8 @@ pub fn held_out_friction(report: &Report) -> Option<String> {
     ))
 }
 
-/// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same.
+/// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same. It is stated as a
+/// supposition where most of the mismatch is unexplained.
 pub fn different_load(report: &Report) -> Option<String> {
     let (load, recordings) = (report.different_load.as_ref()?, &report.recordings);
     let all = recordings.train.len() + recordings.held_out.len();
@@ -62,23 +63,31 @@ pub fn different_load(report: &Report) -> Option<String> {
     let Parameter { value, ci95: [low, high], unit } = load.more_than_others;
     let (size, word) = if value < 0.0 { ([-value, -high, -low], "less") } else { ([value, low, high], "more") };
     let size = Parameter { value: size[0], ci95: [size[1], size[2]], unit };
-    let advice = if report.changed.is_some() {
+    // What no effect explains may look like a load.
+    let is_doubtful = report.verdict == Verdict::Unexplained || remaining(report).is_some();
+    let made = match (is_doubtful, with == 1) {
+        (true, true) => "seems to have been made",
+        (true, false) => "seem to have been made",
+        (false, true) => "was made",
+        (false, false) => "were made",
+    };
+    let advice = if is_doubtful {
+        " Most of the mismatch is unexplained, and its cause may look like a load: check what the arm held."
+    } else if report.changed.is_some() {
         ""
     } else {
         " This is taken into account. To name what else differs between them, diagnose each group alone, or give one of them with --before."
     };
     if let Some(until) = load.until {
         return Some(format!(
-            "{} {} made with {} {word} at the tip than later, until {until:.2} s on the common clock. This is taken into account.",
+            "{} {made} with {} {word} at the tip than later, until {until:.2} s on the common clock. This is taken into account.",
             list(&names),
-            if with == 1 { "was" } else { "were" },
             numbers::with_interval("mass", &size),
         ));
     }
     Some(format!(
-        "{} {} made with {} {word} at the tip than the other {others}.{advice}",
+        "{} {made} with {} {word} at the tip than the other {others}.{advice}",
         some_of(names),
-        if with == 1 { "was" } else { "were" },
         numbers::with_interval("mass", &size),
     ))
 }

@@ -300,7 +300,7 @@ fn largest_error(report: &Report) -> Option<(&str, f64)> {
 /// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
 /// and a considerable error remains; on held-out recordings where there are any. Joints that no training recording moves do not count: no
 /// effect is searched on them.
-fn remaining(report: &Report) -> Option<[f64; 2]> {
+pub fn remaining(report: &Report) -> Option<[f64; 2]> {
     let is_fitted = |fit: &&JointFit| fit.train_nrmse_nominal > 0.0;
     let over_joints = |pick: &dyn Fn(&JointFit) -> f64| rms(report.fit.values().filter(is_fitted).map(pick));
     let before = over_joints(&|fit| fit.held_out_nrmse_nominal.unwrap_or(fit.train_nrmse_nominal))?;

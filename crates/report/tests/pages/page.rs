@@ -94,6 +94,21 @@ fn what_changed_comes_first() {
     assert!(!first(None).contains("Since the recordings"));
 }
 
+/// A load is a supposition where most of the mismatch is unexplained.
+#[test]
+fn a_load_beside_an_unexplained_mismatch_is_a_supposition() {
+    let (mut report, traces, arm) = made_up::diagnosis(2, Plot::Rich);
+    let more_than_others = diagnosis::Parameter { value: 1.0, ci95: [0.9, 1.1], unit: "kg" };
+    let recordings = vec![report.recordings.train[0].clone()];
+    report.different_load = Some(diagnosis::DifferentLoad { recordings, more_than_others, until: None });
+    let page = report::page(&report, &traces, &arm);
+    assert!(page.contains(" was made with 1.00 ± 0.10 kg more at the tip than the other"));
+    report.verdict = Verdict::Unexplained;
+    let page = report::page(&report, &traces, &arm);
+    assert!(page.contains(" seems to have been made with 1.00 ± 0.10 kg more at the tip than the other"));
+    assert!(page.contains("check what the arm held"));
+}
+
 /// An unexplained residual may hide a change, and without enough data nothing can be compared.
 #[test]
 fn that_nothing_changed_is_said_as_far_as_it_would_show() {
