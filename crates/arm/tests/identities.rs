@@ -137,7 +137,8 @@ fn jacobian_is_the_derivative_of_the_pose() {
 }
 
 /// The features of algorithm 1: ω and ω̇ are the motion of the link itself, τ_{i+1} and f_{i+1} the wrench on the rest
-/// of the arm. At rest, the force is the weight of the distal links, and it is zero at the last link.
+/// of the arm. At rest, the force is the weight of the distal links, and it is zero at the last link. In link i's frame, it is the same
+/// vector.
 #[test]
 fn newton_euler_features_are_the_loads_between_links() {
     for_each_state(|arm, workspace, random| {
@@ -147,39 +148,19 @@ fn newton_euler_features_are_the_loads_between_links() {
         let mut tau = vec![0.0; n];
         let mut features = vec![[0.0; arm::FEATURES]; n];
         arm.newton_euler_features(workspace, &q, &zeros, &zeros, &mut tau, &mut features);
-        for i in 0..n {
-            let distal: f64 = arm.joints()[i + 1..].iter().map(|joint| joint.inertia.mass).sum();
-            let force = Vector3::from_column_slice(&features[i][9..12]).norm();
-            assert_close("weight", &[force], &[distal * arm.gravity().norm()], 1e-12);
-            assert_eq!(features[i][12], tau[i]);
-            assert!(features[i][..6].iter().all(|x| *x == 0.0));
-        }
-        assert!(features[n - 1][6..12].iter().all(|x| *x == 0.0));
-    });
-}
-
-/// In link i's frame, the load of the next link is the same vector: at rest, its force is opposite to the weight of the distal links.
-#[test]
-fn loads_in_own_frames_are_the_same_vectors() {
-    for_each_state(|arm, workspace, random| {
-        let n = arm.dof();
-        let q = random.vector(n, 3.0);
-        let zeros = vec![0.0; n];
-        let mut tau = vec![0.0; n];
-        let mut features = vec![[0.0; arm::FEATURES]; n];
-        arm.newton_euler_features(workspace, &q, &zeros, &zeros, &mut tau, &mut features);
-        let before = features.clone();
-        arm.turn_loads_into_own_frames(workspace, &mut features);
+        let mut own_frame = features.clone();
+        arm.turn_loads_into_own_frames(workspace, &mut own_frame);
         arm.forward_kinematics(workspace, &q);
         for i in 0..n {
-            let base_from_link = workspace.base_from_link(i).rotation;
             let distal: f64 = arm.joints()[i + 1..].iter().map(|joint| joint.inertia.mass).sum();
-            let force = base_from_link * Vector3::from_column_slice(&features[i][9..12]);
-            assert_close("weight", force.as_slice(), (-distal * arm.gravity()).as_slice(), 1e-12);
-            let norm = |feature: &[f64]| Vector3::from_column_slice(&feature[6..9]).norm();
-            assert_close("moment", &[norm(&features[i])], &[norm(&before[i])], 1e-12);
-            assert_eq!(features[i][..6], before[i][..6]);
-            assert_eq!(features[i][12], before[i][12]);
+            let vector = |feature: &[f64], from: usize| Vector3::from_column_slice(&feature[from..from + 3]);
+            assert_close("weight", &[vector(&features[i], 9).norm()], &[distal * arm.gravity().norm()], 1e-12);
+            let in_base = workspace.base_from_link(i).rotation * vector(&own_frame[i], 9);
+            assert_close("force", in_base.as_slice(), (-distal * arm.gravity()).as_slice(), 1e-12);
+            assert_close("moment", &[vector(&own_frame[i], 6).norm()], &[vector(&features[i], 6).norm()], 1e-12);
+            assert_eq!((features[i][12], own_frame[i][12]), (tau[i], tau[i]));
+            assert!(features[i][..6].iter().chain(&own_frame[i][..6]).all(|x| *x == 0.0));
         }
+        assert!(features[n - 1][6..12].iter().all(|x| *x == 0.0));
     });
 }
