@@ -51,7 +51,7 @@ impl Arm {
     }
 
     /// Turns τ_{i+1} and f_{i+1} of the `features` that [`Self::newton_euler_features`] computed last with `workspace` into link i's frame
-    /// (ⁱR_{i+1} τ_{i+1} and ⁱR_{i+1} f_{i+1}, as they enter equation 15 of the paper). Their component along the axis of a revolute joint i
+    /// (ⁱR_{i+1} τ_{i+1} and ⁱR_{i+1} f_{i+1}, the terms of equation 15 of the paper). Their component along the axis of a revolute joint i
     /// is then a linear function of the features that does not depend on q_{i+1}.
     ///
     /// # Panics

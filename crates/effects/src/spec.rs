@@ -170,7 +170,7 @@ pub struct Spec {
     /// Whether its form is certain, because it follows from rigid-body dynamics.
     pub is_certain_in_form: bool,
     /// The evidence that it must bring beside the correction of all inertial parameters that is best without it (nats),
-    /// where the URDF is wrong everywhere; `None` for an effect without this test.
+    /// where the URDF is wrong everywhere; `None` for an effect without this test. One that changed needs less.
     pub least_beside_inertials: Option<f64>,
     /// The largest deviation of its main parameter from that of no effect with which it is named where the URDF is wrong everywhere.
     pub most_beside_inertials: Option<f64>,

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use diagnosis::{Parameter, RecordingNames, Report, Verdict, late};
+use diagnosis::{Parameter, RecordingNames, Report, late};
 
 use crate::numbers;
-use crate::words::{list, remaining};
+use crate::words::{is_mostly_unexplained, list};
 
 /// The most recordings whose names a sentence lists.
 const NAMED_RECORDINGS: usize = 4;
@@ -53,8 +53,8 @@ pub fn held_out_friction(report: &Report) -> Option<String> {
     ))
 }
 
-/// The load that only some of the recordings have, and what to do, in two sentences; `None` if all have the same. It is stated as a
-/// supposition where most of the mismatch is unexplained.
+/// The load that only some of the recordings have, and what to do; `None` if all have the same. It is stated as a supposition where most of
+/// the mismatch is unexplained.
 pub fn different_load(report: &Report) -> Option<String> {
     let (load, recordings) = (report.different_load.as_ref()?, &report.recordings);
     let all = recordings.train.len() + recordings.held_out.len();
@@ -64,32 +64,28 @@ pub fn different_load(report: &Report) -> Option<String> {
     let (size, word) = if value < 0.0 { ([-value, -high, -low], "less") } else { ([value, low, high], "more") };
     let size = Parameter { value: size[0], ci95: [size[1], size[2]], unit };
     // What no effect explains may look like a load.
-    let is_doubtful = report.verdict == Verdict::Unexplained || remaining(report).is_some();
+    let is_doubtful = is_mostly_unexplained(report);
     let made = match (is_doubtful, with == 1) {
         (true, true) => "seems to have been made",
         (true, false) => "seem to have been made",
         (false, true) => "was made",
         (false, false) => "were made",
     };
+    let than = load.until.map_or_else(
+        || format!("than the other {others}"),
+        |until| format!("than later, until {until:.2} s on the common clock"),
+    );
     let advice = if is_doubtful {
-        " Most of the mismatch is unexplained, and its cause may look like a load: check what the arm held."
+        " This is taken into account, but most of the mismatch is unexplained, and its cause may look like a load: check what the arm held."
+    } else if load.until.is_some() {
+        " This is taken into account."
     } else if report.changed.is_some() {
         ""
     } else {
         " This is taken into account. To name what else differs between them, diagnose each group alone, or give one of them with --before."
     };
-    if let Some(until) = load.until {
-        return Some(format!(
-            "{} {made} with {} {word} at the tip than later, until {until:.2} s on the common clock. This is taken into account.",
-            list(&names),
-            numbers::with_interval("mass", &size),
-        ));
-    }
-    Some(format!(
-        "{} {made} with {} {word} at the tip than the other {others}.{advice}",
-        some_of(names),
-        numbers::with_interval("mass", &size),
-    ))
+    let names = if load.until.is_some() { list(&names) } else { some_of(names) };
+    Some(format!("{names} {made} with {} {word} at the tip {than}.{advice}", numbers::with_interval("mass", &size)))
 }
 
 /// The lags of torques that were removed, as sentences; `None` if there were none.

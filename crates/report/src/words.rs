@@ -178,15 +178,27 @@ pub fn changed(report: &Report) -> Option<String> {
 
 /// That nothing has changed, as far as it would show.
 fn no_change(report: &Report) -> String {
-    let mut open: Vec<String> = report.unexplained.iter().map(|open| open.joint.clone()).collect();
-    open.dedup();
-    let hidden = match open.len() {
+    let hidden = match report.unexplained.len() {
         0 => String::new(),
-        n if n > 3 => format!(" The unexplained residuals on {n} joints may hide one."),
-        1 => format!(" The unexplained residual on {} may hide one.", list(&open)),
-        _ => format!(" The unexplained residuals on {} may hide one.", list(&open)),
+        1 => format!(" The unexplained residual on {} may hide one.", open_joints(report)),
+        _ => format!(" The unexplained residuals on {} may hide one.", open_joints(report)),
     };
     format!("Since the recordings from before, no change was found.{hidden}")
+}
+
+/// The joints with an unexplained residual, or their number if there are more than three.
+fn open_joints(report: &Report) -> String {
+    let open: Vec<String> = report.unexplained.iter().map(|open| open.joint.clone()).collect();
+    if open.len() > 3 { format!("{} joints", open.len()) } else { list(&open) }
+}
+
+/// Whether most of the mismatch is unexplained.
+pub fn is_mostly_unexplained(report: &Report) -> bool {
+    match report.verdict {
+        Verdict::Unexplained => true,
+        Verdict::PartlyExplained => remaining(report).is_some(),
+        _ => false,
+    }
 }
 
 /// The verdict in one sentence or two. When most of the mismatch remains unexplained, the first sentence says so. A sentence on joints
@@ -213,8 +225,7 @@ fn of_diagnosed(report: &Report) -> String {
         on.push("the whole arm".to_owned());
     }
     let on = list(&on);
-    let open: Vec<String> = report.unexplained.iter().map(|open| open.joint.clone()).collect();
-    let open = if open.len() > 3 { format!("{} joints", open.len()) } else { list(&open) };
+    let open = open_joints(report);
     let is_validated = !report.recordings.held_out.is_empty();
     match report.verdict {
         Verdict::NoMismatch if found.is_empty() => {
@@ -300,7 +311,7 @@ fn largest_error(report: &Report) -> Option<(&str, f64)> {
 /// The RMS over the joints of the relative torque error, nominal and with the effects found, where more than half of it
 /// and a considerable error remains; on held-out recordings where there are any. Joints that no training recording moves do not count: no
 /// effect is searched on them.
-pub fn remaining(report: &Report) -> Option<[f64; 2]> {
+fn remaining(report: &Report) -> Option<[f64; 2]> {
     let is_fitted = |fit: &&JointFit| fit.train_nrmse_nominal > 0.0;
     let over_joints = |pick: &dyn Fn(&JointFit) -> f64| rms(report.fit.values().filter(is_fitted).map(pick));
     let before = over_joints(&|fit| fit.held_out_nrmse_nominal.unwrap_or(fit.train_nrmse_nominal))?;

@@ -93,7 +93,7 @@ pub fn run(args: &RunArgs, chain: &ChainArgs) -> anyhow::Result<()> {
         train: &sources,
         seed: args.seed,
         tracking: [Tracking::new(kind, &outcome)],
-        settings: Settings::new(&scenario, kind, trained, samples.len()),
+        settings: Settings::new(&scenario, kind, trained, options.inducing, samples.len()),
         torque_mse: errors.fed_forward.clone(),
         saturated: outcome.saturated.clone(),
         real_time_factor: outcome.real_time_factor,

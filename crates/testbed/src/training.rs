@@ -190,8 +190,8 @@ fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut S
             _ => "qdd_<joint> (rad/s²)",
         };
         bail!(
-            "it lacks the columns {lacks}, which training needs; a run's recording.csv has them, and for a robot's recording they are \
-             the central differences of positions that a low-pass filter without phase shift has passed, as the torques must, too"
+            "it lacks the columns {lacks}, which training needs; a run's recording.csv has them, and for a robot's recording they qd_ are \
+             the central differences of the positions after a low-pass filter without phase shift, qdd_ those of qd_; filter the torques alike"
         );
     };
     let mut next = f64::NEG_INFINITY;

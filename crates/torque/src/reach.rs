@@ -15,7 +15,7 @@ pub(crate) struct Reach {
     /// The prior variance over the mean square of the torques that were learned, at least 1. A fit whose amplitude far exceeds its
     /// data knows nothing where its variance nears theirs, long before it nears the prior's.
     over_data: f64,
-    /// The share of the smaller of the two from which the torque fades.
+    /// The share of the smaller of prior variance and mean square from which the torque fades.
     from: f64,
 }
 

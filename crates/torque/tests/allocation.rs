@@ -22,10 +22,11 @@ fn no_control_step_allocates() {
     let options = LagrangianOptions { starts: 1, max_iterations: 5, ..LagrangianOptions::default() };
     let energies = Lagrangian::on_top_of(&nominal, &samples(60, 0), &options).expect("it trains");
     let alone = Lagrangian::alone(&nominal, &samples(60, 0), &options).expect("it trains");
-    let models: [(&str, Box<dyn TorqueModel>); 5] = [
+    let models: [(&str, Box<dyn TorqueModel>); 6] = [
         ("joint motion", learned(Inputs::JointMotion)),
         ("12 inputs", learned(Inputs::NewtonEuler12)),
         ("13 inputs", learned(Inputs::NewtonEuler13)),
+        ("12 inputs, own frame", learned(Inputs::NewtonEulerOwnFrame)),
         ("energies", Box::new(energies)),
         ("energies only", Box::new(alone)),
     ];

@@ -18,8 +18,8 @@ use crate::selection::torque_constants;
 use crate::selection::unclear::{Unclear, unclear};
 
 use crate::thresholds::{
-    CHANGE_BESIDE_INERTIALS, HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, MOST_SETTLING,
-    PARTLY, UNDECIDED_NATS,
+    HOPELESS, LEAST_BESIDE_SOME_LINKS, LEAST_FINAL_SHARE, LEAST_UNDECIDED, MOST_FOR_A_CHANGE, MOST_SETTLING, PARTLY,
+    UNDECIDED_NATS,
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
@@ -252,7 +252,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         let is_wrong = study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders();
         let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
         // Links that are wrong are as wrong before a change.
-        let least = if study.changes(member.candidate) { CHANGE_BESIDE_INERTIALS * least } else { least };
+        let least = if study.changes(member.candidate) { least.min(MOST_FOR_A_CHANGE) } else { least };
         let size = judged.named.fit.coefficient(study.candidates[member.candidate].columns[0]).abs();
         let is_too_far = hypothesis.spec().most_beside_inertials.is_some_and(|most| size > most);
         let is_weak = is_too_far || evidence(study) < least;

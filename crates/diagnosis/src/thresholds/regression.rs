@@ -8,9 +8,10 @@ pub const EVIDENCE_RATE: f64 = 4.0;
 pub const EVIDENCE_PER_PERIOD: f64 = 8.0;
 /// Independent pieces of evidence in a second of any motion, at most (1/s). Source: first diagnosis.
 pub const MOST_EVIDENCE_RATE: f64 = 10.0;
-/// The number of parts into which the only recording that moves a joint is divided for cross-validation. Source: first diagnosis.
+/// The number of parts into which the only recording that moves a joint, or the only one on its side of a change, is divided for
+/// cross-validation. Source: first diagnosis.
 pub const STRETCHES: usize = 4;
-/// The number of groups into which several recordings are divided for cross-validation. Source: first diagnosis.
+/// The number of groups into which several recordings, or their parts, are divided for cross-validation. Source: first diagnosis.
 pub const RECORDING_GROUPS: usize = 6;
 /// The prior standard deviation of friction's form, and of its change from recording to recording, at strength one, as
 /// a part of the joint's torque. Source: a prototype of the background in Python, on 17 of the open cases: a tenth of

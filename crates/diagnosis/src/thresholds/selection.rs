@@ -88,9 +88,9 @@ pub const AGAINST_BOTH: f64 = 3.0;
 /// parameter may be that of no effect (nats). Source: simulated cases with wrong URDFs, in which effects of up to 1300
 /// nats were dropped because an interval held zero.
 pub const CLEAR_THOUGH_UNDETERMINED: f64 = 20.0;
-/// The part of the evidence against wrong inertial parameters that an effect needs if it acts only since a change, or only before it.
-/// Source: changes of 12 kinds that were added to recordings of ten real robots, and 58 pairs without a change.
-pub const CHANGE_BESIDE_INERTIALS: f64 = 0.4;
+/// The most evidence against wrong inertial parameters that an effect needs if it acts only since a change, or only before it (nats).
+/// Source: changes of 12 kinds that were added to recordings of ten real robots, and 58 pairs of their recordings without a change.
+pub const MOST_FOR_A_CHANGE: f64 = 24.0;
 /// The multiple of a joint's unexplained residual that a change since the recordings from before must exceed. Source: recordings of a
 /// double pendulum that did not change, in which four changes of 0.1 to 0.6 times the residual were named.
 pub const CHANGE_BESIDE_RESIDUAL: f64 = 1.0;

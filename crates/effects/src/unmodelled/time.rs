@@ -15,7 +15,8 @@ pub static TIME: Spec = Spec {
                 let count = ((to - from) / 4.0).ceil().clamp(2.0, 12.0) as usize;
                 let width = (to - from) / (count - 1) as f64;
                 let centre = |k: usize| from + width * k as f64;
-                // A constant torque of the recordings after a change is a torque offset, and no slow function of time.
+                // A constant torque of the recordings after a change is a torque offset, and no slow function of time. Without its mean in each
+                // recording, the function cannot step between them.
                 if grounds.has_change {
                     let within = |k: usize| Term::on(&MOMENT_WITHIN, joint).sized([centre(k), width, from, to]);
                     moments.extend((1..count).map(within));
@@ -44,13 +45,13 @@ static MOMENT: Law = Law {
     ..Law::PLAIN
 };
 
-/// A tent function of time in one recording, less its mean there; sizes are its centre, half its width, and when the recording begins and
-/// ends (s).
+/// A tent function of time in one recording, less its mean over the time of the recording; sizes are its centre, half its width, and when
+/// the recording begins and ends (s).
 static MOMENT_WITHIN: Law = Law {
     name: "moment within a recording",
     column: |term, _, motion| {
         let [centre, width, from, to] = term.sizes;
-        if motion.time(0) > to || motion.time(motion.ticks()) < from {
+        if to <= from || motion.time(0) > to || motion.time(motion.ticks()) < from {
             return Some(vec![0.0; motion.ticks()]);
         }
         // The tent is whole, or half of it is beyond the end.

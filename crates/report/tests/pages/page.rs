@@ -107,6 +107,15 @@ fn a_load_beside_an_unexplained_mismatch_is_a_supposition() {
     let page = report::page(&report, &traces, &arm);
     assert!(page.contains(" seems to have been made with 1.00 ± 0.10 kg more at the tip than the other"));
     assert!(page.contains("check what the arm held"));
+    report.different_load.as_mut().expect("it was set").until = Some(12.0);
+    let page = report::page(&report, &traces, &arm);
+    assert!(
+        page.contains("more at the tip than later, until 12.00 s on the common clock. This is taken into account, but")
+    );
+    // A torque that looks like noise is not unexplained, however large it is.
+    report.verdict = Verdict::NoMismatch;
+    report.fit.values_mut().for_each(|fit| fit.held_out_nrmse_augmented = Some(0.9));
+    assert!(report::page(&report, &traces, &arm).contains(" was made with 1.00 ± 0.10 kg more"));
 }
 
 /// An unexplained residual may hide a change, and without enough data nothing can be compared.

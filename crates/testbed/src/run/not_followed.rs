@@ -35,7 +35,7 @@ pub fn remark(scenario: &Scenario, kind: ModelKind, outcome: &Outcome) -> String
     }
     let [kp, kd] = match scenario.feedback {
         Feedback::MassMatrix { .. } => ["1/s²", "1/s"],
-        Feedback::Gains { .. } => ["N m/rad", "N m s/rad"],
+        Feedback::Gains { .. } => ["N m/rad, or N/m", "N m s/rad, or N s/m"],
     };
     let model = match kind {
         ModelKind::True => "",

@@ -66,6 +66,9 @@ struct Model {
     /// Absent if the model's regressions have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     length_scales: Option<String>,
+    /// The number of inducing points that was asked for; absent if none was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inducing: Option<usize>,
     /// Whether the learned torque fades; absent from a model that does not learn.
     #[serde(skip_serializing_if = "Option::is_none")]
     fade: Option<bool>,
@@ -118,6 +121,7 @@ impl<'a> Settings<'a> {
         scenario: &'a Scenario,
         kind: ModelKind,
         length_scales: Option<LengthScalesArg>,
+        inducing: Option<usize>,
         samples: usize,
     ) -> Self {
         let (feedback, kp, kd) = match &scenario.feedback {
@@ -132,6 +136,7 @@ impl<'a> Settings<'a> {
                 kind: kind.flag(),
                 inertia_scale: scenario.inertia_scale,
                 length_scales: length_scales.map(LengthScalesArg::flag),
+                inducing: inducing.filter(|_| kind.learns()),
                 fade: kind.learns().then_some(scenario.fade),
             },
             reference: Rate { sample_rate: scenario.sample_rate },

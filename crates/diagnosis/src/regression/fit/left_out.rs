@@ -59,7 +59,7 @@ impl Products {
     }
 
     /// The gain of `added` columns in addition to those of `base` (nats): where they were fitted, and on groups of recordings
-    /// left out in turn, or on stretches of the only recording.
+    /// left out in turn, or on stretches of a recording that is alone.
     pub fn gains(&self, table: &Table, base: &LeftOut<'_>, added: &[usize]) -> (f64, f64) {
         if base.groups.len() < 2 {
             return (0.0, 0.0);
@@ -104,7 +104,9 @@ impl Products {
                 vec![of(r).collect()]
             }
         };
-        let pieces: Vec<Vec<&Stretch>> = excited.iter().flat_map(pieces).collect();
+        let mut pieces: Vec<Vec<&Stretch>> = excited.iter().flat_map(pieces).collect();
+        // If the groups are common, their numbers are those of the other joints.
+        pieces.retain(|piece| common || !piece.is_empty());
         let count = pieces.len().min(RECORDING_GROUPS);
         let fold = |k: usize| pieces.iter().skip(k).step_by(count).flatten().copied().collect();
         (0..count).map(fold).collect()
