@@ -12,6 +12,7 @@ use crate::options::{Options, Step};
 use crate::pass::Pass;
 use crate::thresholds::{CUTOFF, MOST_LAGS};
 use crate::torque_lag::{Lagging, Lags, TorqueLag, WithoutLag, remark_on_own};
+use crate::trace::{Action, Trace};
 
 /// Diagnoses where and why `inputs` differ from `arm`. `progress` receives each step as it begins.
 ///
@@ -25,9 +26,8 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Fn(Step<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
-    let (first, lags, without_lag) = without_torque_lag(arm, inputs, options, progress)?;
+    let (Pass { last, conclusion }, lags, without_lag) = without_torque_lag(arm, inputs, options, progress)?;
     let inputs = &without_lag.of(inputs)[..];
-    let Pass { last, conclusion } = first.or_slower(arm, inputs, options, progress)?;
     let next = if options.next && conclusion.not_enough_data.is_empty() {
         progress(Step::new(0.8, "next experiment"));
         Some(next::propose(&last, &conclusion, arm, &options.known)?)
@@ -57,7 +57,7 @@ fn without_torque_lag(
     let mut without = WithoutLag::new(inputs, &lags);
     let moved = without.of(inputs);
     check(arm, &moved, options.cutoff.unwrap_or(CUTOFF))?;
-    let mut pass = Pass::new(arm, &moved, options, progress)?;
+    let mut pass = Pass::new(arm, &moved, options, Trace::default(), progress)?;
     if stated.is_some() {
         return Ok((pass, lags, without));
     }
@@ -93,7 +93,8 @@ fn without_torque_lag(
             break;
         }
         let trace = std::mem::take(&mut pass.last.study.trace);
-        pass = Pass::again(arm, &next_moved, options, (trace, removed, rule), &again)?;
+        trace.step([(Action::Lag, removed, None, rule, 0.0)]);
+        pass = Pass::new(arm, &next_moved, options, trace, &again)?;
         (lags, without, found) = (next, recordings, of_these);
     }
     let of_all = found.filter(|_| lags.common != 0.0).map(|found| found.remark(lags.common));

@@ -9,6 +9,5 @@ pub mod plan;
 pub mod problem;
 pub mod refine;
 pub mod scan;
-pub mod scope;
 pub mod study;
 mod suggest;

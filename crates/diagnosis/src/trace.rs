@@ -15,8 +15,6 @@ pub enum Action {
     Dropped,
     /// The background became stronger or weaker.
     Background,
-    /// The search begins again with another filter, or its result is kept or not.
-    Filter,
     /// The search begins again with torques without their lag.
     Lag,
 }
@@ -28,7 +26,6 @@ impl fmt::Display for Action {
             Self::Taken => "taken",
             Self::Dropped => "dropped",
             Self::Background => "background",
-            Self::Filter => "filter",
             Self::Lag => "lag",
         })
     }
@@ -41,7 +38,7 @@ pub struct Decision {
     pub step: usize,
     /// The decision.
     pub action: Action,
-    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a filter, its cut-off; for a lag, its length.
+    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a lag, its length.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,

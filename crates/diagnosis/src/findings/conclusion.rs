@@ -13,8 +13,8 @@ use super::locate::locate;
 use super::observability::not_testable;
 use super::traces::traces;
 use super::verdict::{
-    ask_for_motion, beyond_limits, known_too_large, moves_in_training, not_enough, poorly_predicted, unexplained,
-    verdict, with_common_cause, with_places,
+    ask_for_motion, beyond_limits, known_too_large, moves_in_training, not_enough, poorly_predicted, slower_filter,
+    unexplained, verdict, with_common_cause, with_places,
 };
 use super::{at_rest, dual_sensor, gaps, own_friction, sentences, transients};
 use crate::data::Data;
@@ -159,6 +159,7 @@ impl Conclusion {
             torque_constants::note_on_alike(study, &judged.named),
             coupling::note(study, &judged.named),
             torque_lag::note_on_short(table, resampled),
+            slower_filter(&data.motions, &unexplained).filter(|_| options.cutoff.is_none()),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
         let placeholders = sentences::placeholders(&data.arm, &study.strengths.least);

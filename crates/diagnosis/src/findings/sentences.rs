@@ -334,6 +334,15 @@ pub fn look_behind_the_drive(joint: &str) -> String {
     )
 }
 
+/// The advice to diagnose again through a slower filter.
+pub fn slower_filter(joints: &[&str], cutoff: f64, slower: f64) -> String {
+    format!(
+        "no model describes the fast torque after impacts in a gear, which hides its slower part: the residual of {} was filtered at \
+         {cutoff:.1} Hz; --cutoff {slower:.1} may show its cause. A name that is only found there is a supposition",
+        joints.join(", ")
+    )
+}
+
 /// The advice for a joint of which friction and drive inertia of any sign, in addition to the known effects, explain more than the catalogue.
 pub fn without_known(joint: &str, error: f64, identified: f64) -> String {
     format!(

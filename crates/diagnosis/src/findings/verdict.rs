@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use arm::Arm;
 use effects::{Effect, Quantity, Regressor};
 
+use crate::data::motion::Motions;
 use crate::data::statistics::rms;
 use crate::findings::held_out_friction::OtherFriction;
 use crate::findings::sentences;
@@ -13,8 +14,8 @@ use crate::report::{Dependence, Finding, JointFit, Located, TimeWindow, Unexplai
 use crate::selection::FinalFit;
 use crate::selection::predict::{autocorrelation, poor, structured, swinging};
 use crate::thresholds::{
-    LEAST_MOTION, LEAST_WITH_COMMON_CAUSE, NOISY_REST, PARTLY, REMEMBERS, REST, STRUCTURED, STRUCTURED_ABOVE_NOISE,
-    STRUCTURED_IN_TRAINING, WITHOUT_KNOWN,
+    LEAST_CUTOFF_PERIODS, LEAST_FOR_DYNAMICS, LEAST_MOTION, LEAST_WITH_COMMON_CAUSE, NOISY_REST, PARTLY, REMEMBERS,
+    REST, STRUCTURED, STRUCTURED_ABOVE_NOISE, STRUCTURED_IN_TRAINING, WITHOUT_KNOWN, WORTH_SLOWING,
 };
 
 /// The structured residuals on each joint that no effect in the catalogue explains, at most as large as the joint's whole error in
@@ -233,6 +234,16 @@ pub fn with_places(located: &[Located], unexplained: &mut [Unexplained]) {
         }
         open.time.clone_from(&place.time);
     }
+}
+
+/// The advice to diagnose again through a slower filter, if residuals stay `unexplained` on some joints only and the motion allows one. A
+/// residual on most joints has another cause than one that the filter hides.
+pub fn slower_filter(motions: &Motions, unexplained: &[Unexplained]) -> Option<String> {
+    let slower = LEAST_FOR_DYNAMICS.max(LEAST_CUTOFF_PERIODS * motions.usual_tempo());
+    let is_some = !unexplained.is_empty() && 2 * unexplained.len() <= motions.dof;
+    let joints: Vec<&str> = unexplained.iter().map(|open| open.joint.as_str()).collect();
+    let is_useful = is_some && slower <= WORTH_SLOWING * motions.cutoff;
+    is_useful.then(|| sentences::slower_filter(&joints, motions.cutoff, slower))
 }
 
 /// The reasons why the recordings are not sufficient for a diagnosis; empty if they are.

@@ -20,7 +20,6 @@ use crate::regression::table::{Moving, Table};
 use crate::search::candidate::{Candidate, Hypothesis, catalogue};
 use crate::search::own_load::OwnLoad;
 use crate::search::problem::{Problem, Selection};
-use crate::search::scope::Scope;
 use crate::thresholds::{
     LEAST_BODY_MASS, LEAST_BODY_RADIUS, LEAST_FOR_DYNAMICS, NEARLY_NO_MASS, OF_PLACEHOLDERS, Thresholds,
 };
@@ -74,8 +73,6 @@ pub struct Study {
     carried: Vec<(Term, f64)>,
     /// The tensor about its centre of mass of a payload whose moments are not fitted (kg m²).
     pub load_tensor: Matrix3<f64>,
-    /// What may be named, if another search preceded; `None` allows everything.
-    pub scope: Option<Scope>,
     /// The record of decisions.
     pub trace: Trace,
     /// The inner products of the present table.
@@ -256,7 +253,6 @@ impl Study {
             own_load: None,
             carried: Vec::new(),
             load_tensor: Matrix3::zeros(),
-            scope: None,
             trace: Trace::default(),
             formed: Formed::default(),
             refused: Vec::new(),

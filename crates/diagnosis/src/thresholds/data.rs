@@ -128,21 +128,9 @@ pub const CHANNEL_LIMITS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 /// In the test of channels, the number of columns of a load on the tool: its mass and first moments. Source:
 /// definition.
 pub const CHANNEL_LOADS: usize = 4;
-/// The cut-off of a second pass, as a part of that of the first. Source: `prove`, seeds 5501, 271126 and 3112026, with 5 Hz in the
-/// place of 12 Hz: in 59 diagnoses with unexplained residuals, injected effects explain those of three, and one of 36 unknown effects
-/// is explained by a false one without [`OF_THE_UNEXPLAINED`], and none with it.
-pub const SLOWER_FILTER: f64 = 0.42;
-/// A second pass is worth its time if its cut-off is at most this part of the first.
+/// A slower filter is worth another diagnosis if its cut-off is at most this part of the present one. Source: a simulated gap of
+/// 0.013 rad in a gear, which stays unexplained with 12 Hz and is found with 5 Hz.
 pub const WORTH_SLOWING: f64 = 0.7;
-/// A name of a second pass counts from this probability on.
-pub const CERTAIN_ENOUGH: f64 = 0.9;
-/// A name of a second pass is the reason for a residual if its share is at least this part of the residual's. Source: as for
-/// [`SLOWER_FILTER`]; a false ripple had a tenth of it, injected effects a third and more.
-pub const OF_THE_UNEXPLAINED: f64 = 0.25;
-/// The part to which a second pass must reduce the errors of the joints whose residuals it explains. Source: a simulated case in which
-/// crosstalk between torque sensors was called a constant torque, with an error of 0.102 instead of 0.103; injected effects reduce
-/// it to a fifth or less.
-pub const FALLS_TO: f64 = 0.8;
 /// The shortest lag of all torques that is removed (s). Source: recordings of ten robots and simulated cases without such a lag, in which
 /// the joints agree on 1.6 ms at most.
 pub const LEAST_LAG: f64 = 0.002;

@@ -314,11 +314,7 @@ impl Study {
 
     /// The candidates that may be taken.
     pub fn allowed(&self) -> Vec<usize> {
-        let is_allowed = |&c: &usize| {
-            let scope = self.scope.as_ref();
-            !self.refused.contains(&self.claim(c)) && scope.is_none_or(|scope| scope.contains(&self.candidates[c]))
-        };
-        (0..self.candidates.len()).filter(is_allowed).collect()
+        (0..self.candidates.len()).filter(|&c| !self.refused.contains(&self.claim(c))).collect()
     }
 
     /// Evaluates everything about the nominal arm again, for another search.
