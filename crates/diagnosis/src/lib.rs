@@ -43,6 +43,7 @@ mod words;
 
 pub use agreement::{Agreement, agreement, searched};
 pub use data::input::Input;
+pub use data::signal::Kernel;
 pub use data::statistics;
 pub use data::used::worth_using;
 pub use diagnose::diagnose;
@@ -54,7 +55,7 @@ pub use excitation::{
 pub use findings::sentences::{Written, described, is_undetermined};
 pub use options::{Options, Step, Wanted};
 pub use report::*;
-pub use thresholds::{LEAST_ROWS, Thresholds, WORTH_HOLDING};
+pub use thresholds::{LARGEST_CUTOFF, LEAST_ROWS, Thresholds, WORTH_HOLDING};
 pub use torque_lag::WithoutLag;
 pub use trace::{Action, Decision};
 pub use words::{late, list};

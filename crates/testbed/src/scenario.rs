@@ -1,6 +1,7 @@
 //! Scenarios: a robot that follows a reference under a controller.
 
 mod raw;
+mod recorded;
 mod validate;
 pub mod writer;
 

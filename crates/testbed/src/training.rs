@@ -170,19 +170,25 @@ fn read_recording(path: &Path, arm: &Arm) -> anyhow::Result<Recording> {
     })
 }
 
-fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut Samples) -> anyhow::Result<()> {
-    let joints = scenario.arm.joints();
-    let column = |name: &str| recording.joints.iter().position(|joint| joint == name);
-    let mut order = Vec::new();
-    for joint in joints {
-        let index = column(&joint.name).with_context(|| {
+/// The indices of the joints of `arm`, in its order, among those of `recording`.
+///
+/// # Errors
+/// If the recording lacks one.
+pub fn columns(recording: &Recording, arm: &Arm) -> anyhow::Result<Vec<usize>> {
+    let column = |joint: &arm::Joint| {
+        let index = recording.joints.iter().position(|name| *name == joint.name);
+        index.with_context(|| {
             format!(
                 "it has no column \"q_{}\"; give a recording of the scenario's robot, or name its columns as the URDF names the joints",
                 joint.name
             )
-        })?;
-        order.push(index);
-    }
+        })
+    };
+    arm.joints().iter().map(column).collect()
+}
+
+fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut Samples) -> anyhow::Result<()> {
+    let order = columns(recording, &scenario.arm)?;
     let (Some(qd), Some(qdd)) = (&recording.qd, &recording.qdd) else {
         let lacks = match (&recording.qd, &recording.qdd) {
             (None, None) => "qd_<joint> (rad/s) and qdd_<joint> (rad/s²)",

@@ -38,6 +38,7 @@ mod reference;
 mod rigid_body;
 mod samples;
 mod summed;
+mod trajectory;
 
 pub use controller::{Command, Controller, Feedback};
 pub use corrected::Corrected;
@@ -54,3 +55,4 @@ pub use reference::{Fade, Motion, Reference, Sine};
 pub use rigid_body::RigidBody;
 pub use samples::{Sample, Samples};
 pub use summed::summed;
+pub use trajectory::Trajectory;

@@ -1,6 +1,9 @@
-//! The reference motion: sums of sines, optionally with a fade-in and a fade-out.
+//! The reference motion: a recorded one, sines, or the sum of both, optionally with a fade-in and a fade-out.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::trajectory::Trajectory;
 
 /// One sine of every joint: amplitude sin(2π frequency t + phase).
 #[derive(Clone, Debug, PartialEq)]
@@ -22,12 +25,14 @@ pub struct Fade {
     pub end: f64,
 }
 
-/// q(t) = centre + Σ sines, one entry per joint. If the motion fades, the sum is multiplied by a factor that rises
-/// from 0 to 1 and returns to 0.
+/// q(t) = centre + (recorded(t) − recorded(0)) + Σ sines, one entry per joint. If the motion fades, what is added to the centre is
+/// multiplied by a factor that rises from 0 to 1 and returns to 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// The centres (rad or m).
     pub centre: Vec<f64>,
+    /// A recorded motion of all joints.
+    pub recorded: Option<Arc<Trajectory>>,
     /// The sines.
     pub sines: Vec<Sine>,
     /// The fade-in and fade-out; `None` starts and ends in full motion.
@@ -58,6 +63,9 @@ impl Reference {
         motion.q.copy_from_slice(&self.centre);
         motion.qd.fill(0.0);
         motion.qdd.fill(0.0);
+        if let Some(recorded) = &self.recorded {
+            recorded.add_to(time, motion);
+        }
         for sine in &self.sines {
             for joint in 0..self.centre.len() {
                 let omega = TAU * sine.frequency[joint];
@@ -108,6 +116,7 @@ mod tests {
     fn derivatives_agree_with_differences() {
         let reference = Reference {
             centre: vec![0.3],
+            recorded: None,
             sines: vec![
                 Sine { amplitude: vec![0.8], frequency: vec![0.22], phase: vec![0.4] },
                 Sine { amplitude: vec![0.2], frequency: vec![1.1], phase: vec![-1.0] },

@@ -88,6 +88,7 @@ impl Series {
         };
         Reference {
             centre: (0..dof).map(|joint| self.centre(coefficients, joint)).collect(),
+            recorded: None,
             sines: (1..=self.harmonics).map(sine).collect(),
             fade: None,
         }

@@ -136,7 +136,12 @@ impl Design {
                 sine.phase[j] = rounded(TAU * (GOLDEN * (dof * tone + j + 3) as f64).fract());
             }
         }
-        Reference { centre: limits.middle.clone(), sines, fade: Some(Fade { seconds: FADE, end: DURATION }) }
+        Reference {
+            centre: limits.middle.clone(),
+            recorded: None,
+            sines,
+            fade: Some(Fade { seconds: FADE, end: DURATION }),
+        }
     }
 }
 

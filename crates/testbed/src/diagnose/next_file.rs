@@ -154,6 +154,7 @@ mod tests {
         };
         let motion = Reference {
             centre: vec![0.1, -0.2, 0.3, 0.0, 0.5, 0.0],
+            recorded: None,
             sines: vec![Sine {
                 amplitude: vec![0.5, 0.25, 0.125, 0.1, 0.2, 1.0 / 3.0],
                 frequency: vec![0.3, 0.4, 0.5, 0.6, 0.7, 1e-3],

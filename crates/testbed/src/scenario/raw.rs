@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::PathBuf;
 
 use anyhow::anyhow;
 use serde::Deserialize;
@@ -59,6 +60,8 @@ pub struct RawModel {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RawReference {
+    pub file: Option<Spanned<PathBuf>>,
+    pub cutoff: Option<Spanned<f64>>,
     pub amplitude: Option<Spanned<PerJoint>>,
     pub frequency_1: Option<Spanned<PerJoint>>,
     pub frequency_2: Option<Spanned<PerJoint>>,

@@ -1,16 +1,18 @@
 //! Validates a scenario.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::{Context, anyhow, bail, ensure};
 use arm::Arm;
 use clap::ValueEnum;
 use study::{Source, robot};
 use toml::Spanned;
-use torque::{Fade, Feedback, Reference, Sine};
+use torque::{Fade, Feedback, Reference, Sine, Trajectory};
 
 use super::Scenario;
 use super::raw::{PerJoint, RawReference, RawScenario};
+use super::recorded::trajectory;
 use crate::cli::{ChainArgs, LengthScalesArg};
 use crate::library;
 use crate::models::ModelKind;
@@ -18,6 +20,7 @@ use crate::sensors::SensorNoise;
 
 /// Defaults of the optional keys, which docs/scenarios.md documents.
 const SAMPLE_RATE: f64 = 80.0;
+const REFERENCE_CUTOFF: f64 = 10.0;
 const CONTROL_RATE: f64 = 1000.0;
 const KP: f64 = 100.0;
 const KD: f64 = 20.0;
@@ -46,7 +49,7 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
     let chain = if flags.is_given() { flags } else { &written };
     let arm = robot.arm(&chain.options(&[])).with_context(of_robot)?;
     let urdf = robot.path;
-    let check = Check { source, arm: &arm };
+    let check = Check { source, folder, arm: &arm };
 
     let duration = check.number("duration", Some(&raw.duration), 0.0)?;
     check.ensure(duration > 0.0 && duration <= MAX_DURATION, &raw.duration, || {
@@ -155,6 +158,8 @@ fn training_source(written: &str, folder: &Path) -> String {
 
 struct Check<'a> {
     source: &'a Source,
+    /// The scenario's folder.
+    folder: &'a Path,
     arm: &'a Arm,
 }
 
@@ -265,7 +270,11 @@ impl Check<'_> {
     fn reference(&self, table: &Spanned<RawReference>, rate: f64, duration: f64) -> anyhow::Result<Reference> {
         let raw = table.get_ref();
         let here = || self.source.place(table.span());
-        let centre = self.joints("reference.centre", raw.centre.as_ref(), 0.0)?;
+        let recorded = self.recorded(raw, duration)?;
+        let centre = match &recorded {
+            Some(recorded) if raw.centre.is_none() => recorded.start().to_vec(),
+            _ => self.joints("reference.centre", raw.centre.as_ref(), 0.0)?,
+        };
         let mut sines = Vec::new();
         let paper = [&raw.amplitude, &raw.frequency_1, &raw.frequency_2];
         match paper {
@@ -296,9 +305,9 @@ impl Check<'_> {
                 phase: self.joints("reference.sines.phase", sine.phase.as_ref(), 0.0)?,
             });
         }
-        if sines.is_empty() {
+        if sines.is_empty() && recorded.is_none() {
             return Err(anyhow!(
-                "{}: no motion; give amplitude, frequency_1 and frequency_2, or [[reference.sines]]",
+                "{}: no motion; give amplitude, frequency_1 and frequency_2, [[reference.sines]], or the file of a recording",
                 here()
             ));
         }
@@ -310,6 +319,31 @@ impl Check<'_> {
         }
         let end = duration;
         let fade = (seconds > 0.0).then_some(Fade { seconds, end });
-        Ok(Reference { centre, sines, fade })
+        Ok(Reference { centre, recorded, sines, fade })
+    }
+
+    /// The recorded motion that the reference follows for the whole `duration` (s); `None` without a file.
+    fn recorded(&self, raw: &RawReference, duration: f64) -> anyhow::Result<Option<Arc<Trajectory>>> {
+        let cutoff = self.number("reference.cutoff", raw.cutoff.as_ref(), REFERENCE_CUTOFF)?;
+        let Some(file) = &raw.file else {
+            let Some(written) = &raw.cutoff else { return Ok(None) };
+            bail!(
+                "{}: reference.cutoff filters the positions of reference.file, which is not given; give both, or neither",
+                self.source.place(written.span())
+            );
+        };
+        if let Some(written) = &raw.cutoff {
+            self.ensure(cutoff > 0.0, written, || format!("reference.cutoff is {cutoff:?} Hz; give more than 0"))?;
+        }
+        let of_file = || format!("{}: reference.file", self.source.place(file.span()));
+        let recorded = trajectory(&self.folder.join(file.get_ref()), self.arm, cutoff).with_context(of_file)?;
+        self.ensure(duration <= recorded.duration(), file, || {
+            format!(
+                "reference.file \"{}\" has {:.3} s of motion, without what its filter needs at both ends; give a duration of at most that",
+                file.get_ref().display(),
+                recorded.duration()
+            )
+        })?;
+        Ok(Some(Arc::new(recorded)))
     }
 }

@@ -1,0 +1,141 @@
+//! A reference from a recording: its positions, smoothed, with their derivatives.
+
+use std::path::Path;
+
+use anyhow::{Context, bail, ensure};
+use arm::Arm;
+use diagnosis::{Kernel, LARGEST_CUTOFF};
+use study::named;
+use torque::{Motion, Trajectory};
+
+use crate::training::columns;
+
+/// The motion of the recording at `path`, with the joints of `arm` in its order. Positions pass a zero-phase low-pass filter with half
+/// its power at `cutoff` (Hz); velocities and accelerations are the derivatives of the filtered positions. The filter takes a moment from
+/// both ends of the recording.
+///
+/// # Errors
+/// If the recording cannot be read, lacks a joint, has a long gap, or is too short for the filter.
+pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<Trajectory> {
+    let recording = named::read(path, None, Some(arm))?;
+    let (regular, _) = recording.regular()?;
+    let of_file = || path.display().to_string();
+    let columns = columns(&recording, arm).with_context(of_file)?;
+    if let [first, second, ..] = &regular.segments[..] {
+        let end = regular.time(first.ticks.end - 1);
+        bail!(
+            "{}: no rows from {end:.3} s to {:.3} s; give a recording without gaps, or the rows on one side of them",
+            path.display(),
+            second.start
+        );
+    }
+    let (rate, most) = (1.0 / regular.period, LARGEST_CUTOFF / regular.period);
+    ensure!(
+        cutoff <= most,
+        "{}: its rows are {rate:.1} Hz apart, which allows a reference.cutoff of at most {most:.2} Hz, but it is {cutoff} Hz",
+        path.display()
+    );
+    let kernel = Kernel::new(cutoff, regular.period);
+    let needed = 2 * kernel.reach() + 2;
+    ensure!(
+        regular.len() >= needed,
+        "{}: it has {} rows, but a filter of {cutoff} Hz needs {needed}; give a longer recording, or a higher reference.cutoff",
+        path.display(),
+        regular.len()
+    );
+    let filtered: Vec<[Vec<f64>; 3]> = columns
+        .iter()
+        .map(|&column| {
+            let q = &regular.q[column];
+            [kernel.smooth(q, 1), kernel.first(q, 1), kernel.second(q, 1)]
+        })
+        .collect();
+    let point = |tick: usize| {
+        let of = |order: usize| filtered.iter().map(|joint| joint[order][tick]).collect();
+        Motion { q: of(0), qd: of(1), qdd: of(2) }
+    };
+    let points = (0..=regular.len() - needed + 1).map(point).collect();
+    Trajectory::new(regular.period, points).with_context(of_file)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+    use std::fmt::Write;
+
+    use super::super::Scenario;
+
+    /// The position of every joint of the recording (rad).
+    fn position(time: f64) -> f64 {
+        0.2 + 0.5 * (TAU * 0.7 * time).sin()
+    }
+
+    /// A scenario with the [reference] table `table`, beside a recording of the PUMA 560 with these `rows` of 4 ms.
+    fn loaded(rows: impl Iterator<Item = usize>, table: &str) -> anyhow::Result<Scenario> {
+        let folder = tempfile::tempdir()?;
+        let mut text = String::from("t");
+        (1..=6).for_each(|joint| _ = write!(text, ",q_joint{joint}"));
+        (1..=6).for_each(|joint| _ = write!(text, ",tau_joint{joint}"));
+        for row in rows {
+            let time = 0.004 * row as f64;
+            _ = write!(text, "\n{time}{}{}", format!(",{}", position(time)).repeat(6), ",0".repeat(6));
+        }
+        std::fs::write(folder.path().join("motion.csv"), text + "\n")?;
+        let file = folder.path().join("follow.toml");
+        std::fs::write(&file, format!("robot = \"puma560\"\nduration = 4.0\n[reference]\n{table}\n"))?;
+        Scenario::load(&file.display().to_string())
+    }
+
+    #[test]
+    fn a_recorded_motion_is_followed_with_its_derivatives() {
+        let scenario = loaded(0..1100, "file = \"motion.csv\"").expect("it is a scenario");
+        let mut motion = torque::Motion::new(6);
+        scenario.reference.at(0.0, &mut motion);
+        // The filter needs a moment of the recording before the motion begins.
+        let begins = ((motion.q[0] - 0.2) / 0.5).asin() / (TAU * 0.7);
+        assert!((0.05..0.2).contains(&begins), "{begins}");
+        for time in [0.0, 0.0013, 1.0, 2.4567, 4.0] {
+            scenario.reference.at(time, &mut motion);
+            let angle = TAU * 0.7 * (time + begins);
+            for joint in [0, 5] {
+                assert!((motion.q[joint] - position(time + begins)).abs() < 1e-4);
+                assert!((motion.qd[joint] - 0.5 * TAU * 0.7 * angle.cos()).abs() < 1e-3);
+                assert!((motion.qdd[joint] + 0.5 * (TAU * 0.7).powi(2) * angle.sin()).abs() < 1e-2);
+            }
+        }
+    }
+
+    /// A centre moves the whole motion, and a fade lets it begin and end at rest there.
+    #[test]
+    fn a_recorded_motion_can_be_moved_and_faded() {
+        let table = "file = \"motion.csv\"\ncutoff = 5.0\ncentre = 1.0\nfade = 1.0";
+        let scenario = loaded(0..1200, table).expect("it is a scenario");
+        let mut motion = torque::Motion::new(6);
+        for time in [0.0, 4.0] {
+            scenario.reference.at(time, &mut motion);
+            assert_eq!((motion.q[3], motion.qd[3]), (1.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_followed_is_refused_with_a_remedy() {
+        let refused = |rows: Vec<usize>, table: &str| match loaded(rows.into_iter(), table) {
+            Ok(_) => panic!("{table} is a scenario"),
+            Err(error) => format!("{error:#}"),
+        };
+        let whole = || (0..1100).collect();
+        let file = "file = \"motion.csv\"";
+        for (rows, table, expected) in [
+            (whole(), "cutoff = 5.0", "reference.file, which is not given"),
+            (whole(), "file = \"other.csv\"", "other.csv"),
+            (whole(), "file = \"motion.csv\"\ncutoff = 100.0", "reference.cutoff of at most 58.75 Hz"),
+            (whole(), "file = \"motion.csv\"\ncutoff = -1.0", "give more than 0"),
+            ((0..500).collect(), file, "give a duration of at most that"),
+            ((0..20).collect(), file, "give a longer recording"),
+            ((0..500).chain(900..1500).collect(), file, "give a recording without gaps"),
+        ] {
+            let error = refused(rows, table);
+            assert!(error.contains(expected) && error.contains("follow.toml:"), "{table}: {error}");
+        }
+    }
+}
