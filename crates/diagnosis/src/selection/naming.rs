@@ -12,7 +12,7 @@ use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::thresholds::{OF_ARM, OF_FORM, SYSTEMATIC};
 use arm::{Arm, Matrix3};
-use effects::{Effect, Estimate, Kind, Law, Scope, Size, Spec, Systematic, Term};
+use effects::{Effect, Estimate, Kind, Law, Range, Scope, Size, Spec, Systematic, Term};
 
 /// A named effect with its parameters.
 #[derive(Clone, Debug)]
@@ -122,9 +122,9 @@ impl Estimate for Reader<'_> {
             Systematic::OfArm | Systematic::FromAbove => OF_FORM + OF_ARM * self.links_wrong_by(),
         };
         // A mass is never known more accurately than the torque constants.
-        let quantity = self.kind.spec().parameter(key).map(|parameter| parameter.quantity);
-        let accuracy = match (quantity, self.study.stated.gain) {
-            (Some(quantity), Some(accuracy)) if quantity.scales_with_torque() => NORMAL_95 * accuracy,
+        let parameter = self.kind.spec().parameter(key);
+        let accuracy = match (parameter, self.study.stated.gain) {
+            (Some(parameter), Some(accuracy)) if parameter.quantity.scales_with_torque() => NORMAL_95 * accuracy,
             _ => 0.0,
         };
         let (value, [low, high]) = self.resampled.interval_within(systematic, f);
@@ -132,6 +132,8 @@ impl Estimate for Reader<'_> {
         let mut ci95 = [value - (value - low).hypot(of_constants), value + (high - value).hypot(of_constants)];
         if is_from_above {
             ci95[0] = 0.0;
+        } else if let Some(parameter) = parameter {
+            ci95 = within(parameter.range, value, ci95);
         }
         let unit = self.unit(key);
         self.parameters.insert(key, Parameter { value, ci95, unit });
@@ -199,9 +201,24 @@ impl Reader<'_> {
     }
 }
 
+/// The part of an interval that lies in a parameter's range. A `value` outside of the range is refused elsewhere, and stays in its interval.
+fn within(range: Range, value: f64, [low, high]: [f64; 2]) -> [f64; 2] {
+    [range.least().map_or(low, |least| low.max(least.min(value))), high]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Neither a duration nor a coefficient of friction can be negative; a constant torque can be.
+    #[test]
+    fn an_interval_ends_where_its_parameter_ends() {
+        assert_eq!(within(Range::Positive, 1.0, [-2.0, 4.0]), [0.0, 4.0]);
+        assert_eq!(within(Range::NotNegative, 1.0, [0.5, 1.5]), [0.5, 1.5]);
+        assert_eq!(within(Range::AboveMinusOne, -0.5, [-1.5, 0.5]), [-1.0, 0.5]);
+        assert_eq!(within(Range::Finite, 1.0, [-2.0, 4.0]), [-2.0, 4.0]);
+        assert_eq!(within(Range::Positive, -1.0, [-2.0, 0.0]), [-1.0, 0.0]);
+    }
 
     /// Every searched effect has a main parameter, so that its name is removed where the interval contains no effect.
     #[test]

@@ -41,6 +41,15 @@ impl Range {
             }
     }
 
+    /// The lower end; `None` if there is none.
+    pub fn least(self) -> Option<f64> {
+        match self {
+            Self::Finite => None,
+            Self::NotNegative | Self::Positive => Some(0.0),
+            Self::AtLeastMinusOne | Self::AboveMinusOne => Some(-1.0),
+        }
+    }
+
     /// The requirement on a value, in words.
     pub fn requirement(self) -> &'static str {
         match self {
