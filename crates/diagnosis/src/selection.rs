@@ -18,6 +18,7 @@ pub mod breakaway;
 pub mod constant_torques;
 pub mod coupling;
 pub mod direction;
+mod drive_or_body;
 pub mod final_fit;
 pub mod gain;
 pub mod held_out_friction;

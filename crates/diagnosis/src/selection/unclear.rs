@@ -10,6 +10,7 @@ use crate::search::problem::Selection;
 use crate::search::study::Study;
 use crate::selection::bootstrap::Resampled;
 use crate::selection::coupling::OnOneJoint;
+use crate::selection::drive_or_body::may_be_a_body;
 use crate::selection::judge::{self, Judged};
 use crate::selection::naming::{Named, is_anywhere, may_be_nothing, name};
 use crate::selection::payload::is_of_no_mass;
@@ -33,6 +34,8 @@ pub enum Unclear {
     Lag,
     /// Only one of its two joints shows it, and the other contradicts it.
     OneJoint,
+    /// A body on the link may be the reason, as far as the joints before it show.
+    Body,
     /// Recordings of one side of the change differ by as much.
     Variation,
     /// Friction of its own in each recording explains as much.
@@ -51,6 +54,9 @@ impl Unclear {
             Self::Residual => "it may be a part of what is unexplained on its joint",
             Self::Lag => "a lag of its joints' torques explains as much",
             Self::OneJoint => "a torque on one of its joints alone explains more",
+            Self::Body => {
+                "a body on its link explains as much, because the joints before it are not explained well enough"
+            }
             Self::Variation => "recordings of one side of the change differ among themselves by as much",
             Self::OwnFriction => "another friction in each recording explains as much",
             Self::Constants => "the torque constants of many joints deviate alike, as with other masses",
@@ -109,6 +115,8 @@ pub fn unclear(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Opt
             Some(Unclear::Lag)
         } else if OnOneJoint::of(study, &judged.named, member.candidate).is_some_and(|one| one.margin < -AGAINST_BOTH) {
             Some(Unclear::OneJoint)
+        } else if may_be_a_body(study, judged, member) {
+            Some(Unclear::Body)
         } else if is_variation(study, judged, member) {
             Some(Unclear::Variation)
         } else if may_be_own_friction(study, judged, member) {

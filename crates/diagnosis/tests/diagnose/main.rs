@@ -3,6 +3,7 @@
 mod agreement;
 mod alike;
 mod catalogue;
+mod changed_drive;
 mod changes;
 mod constants;
 mod direction;
