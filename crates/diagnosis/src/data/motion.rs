@@ -9,7 +9,7 @@ use crate::data::noise::{WhiteNoise, band_noise};
 use crate::data::signal::{Kernel, outputs};
 use crate::data::statistics::median;
 use crate::data::used::{Section, Used};
-use crate::thresholds::{LARGEST_CUTOFF, MOST_ROWS, ROWS_PER_PERIOD, SHAKES_FOR, STILL};
+use crate::thresholds::{LARGEST_CUTOFF, MOST_GROUPS, MOST_ROWS, ROWS_PER_PERIOD, SHAKES_FOR, STILL};
 
 /// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
 const WIDER: f64 = 3.0;
@@ -26,6 +26,8 @@ const PAUSE: f64 = 10.0;
 pub struct Chunk {
     /// The index of its recording.
     pub recording: usize,
+    /// The first recording of the group that it belongs to, as in [`Motions::groups`].
+    pub group: usize,
     /// The time of the first tick (s).
     pub start: f64,
     /// The time between ticks (s).
@@ -113,6 +115,9 @@ pub struct Motions {
     pub chunks: Vec<Chunk>,
     /// Properties of the recordings, one each.
     pub sources: Vec<SourceRecording>,
+    /// For each recording, the first one of the group in which it has its own friction and is left out together with others: itself, or one
+    /// before it if there are many.
+    pub groups: Vec<usize>,
     /// The half-power frequency of the second filter (Hz).
     pub cutoff: f64,
     /// The frequency of each joint's motion in the training recordings (Hz): that of a sinusoid with the same speed and
@@ -127,6 +132,17 @@ pub struct Motions {
     pub changed_at: Option<f64>,
     /// Notes on omitted data, in sentences.
     pub remarks: Vec<String>,
+}
+
+/// The groups of recordings with these roles: at most [`MOST_GROUPS`] of those with the same role, in their order. For each recording, the
+/// first one of its group.
+fn groups<Role: PartialEq>(roles: &[Role]) -> Vec<usize> {
+    let of = |recording: usize| {
+        let like: Vec<usize> = (0..roles.len()).filter(|&other| roles[other] == roles[recording]).collect();
+        let size = like.len().div_ceil(MOST_GROUPS);
+        like[like.partition_point(|&other| other < recording) / size * size]
+    };
+    (0..roles.len()).map(of).collect()
 }
 
 impl Motions {
@@ -144,6 +160,7 @@ impl Motions {
             dof: inputs.first().map_or(0, |input| input.recording.joints.len()),
             chunks: Vec::new(),
             sources: Vec::new(),
+            groups: Vec::new(),
             cutoff,
             tempo: Vec::new(),
             one_clock: overlap.is_none() && !has_before,
@@ -171,6 +188,11 @@ impl Motions {
             motions.sources[index].part = used.part(index, input);
         }
         motions.tempo = motions.tempo();
+        let role = |recording: usize| (motions.sources[recording].held_out, motions.is_before(recording));
+        motions.groups = groups(&(0..motions.sources.len()).map(role).collect::<Vec<_>>());
+        for chunk in &mut motions.chunks {
+            chunk.group = motions.groups[chunk.recording];
+        }
         motions
     }
 
@@ -236,6 +258,7 @@ impl Motions {
             };
             Chunk {
                 recording: index,
+                group: index,
                 start: shift + recording.time(window.start) + first.reach() as f64 * recording.period,
                 period,
                 q: each(&recording.q, Kernel::smooth),
@@ -321,4 +344,23 @@ fn overlapping<'a>(inputs: &[Input<'a>]) -> Option<[&'a str; 2]> {
     spans.sort_by(|a, b| a.0.total_cmp(&b.0));
     let pair = spans.windows(2).find(|pair| pair[1].0 < pair[0].1)?;
     Some([pair[0].2, pair[1].2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_recordings_of_a_role_are_grouped_in_their_order() {
+        let few = groups(&[false; MOST_GROUPS]);
+        assert_eq!(few, (0..MOST_GROUPS).collect::<Vec<_>>());
+        // Every third one is held out: 34 of 100.
+        let is_held_out: Vec<bool> = (0..100).map(|recording| recording % 3 == 0).collect();
+        let grouped = groups(&is_held_out);
+        assert_eq!(grouped[..12], [0, 1, 1, 0, 1, 5, 6, 5, 5, 6, 10, 10]);
+        let mut first = grouped.clone();
+        first.sort_unstable();
+        first.dedup();
+        assert!(first.iter().all(|&one| grouped[one] == one && first.len() <= 2 * MOST_GROUPS));
+    }
 }

@@ -71,7 +71,7 @@ impl Rigid {
     /// `chunk`, to which this belongs, as regressors see it.
     pub fn along<'a>(&'a self, chunk: &'a Chunk, scales: &'a Scales) -> Signals<'a> {
         Signals {
-            recording: chunk.recording,
+            recording: chunk.group,
             start: chunk.start,
             period: chunk.period,
             q: &chunk.q,

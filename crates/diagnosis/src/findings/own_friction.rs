@@ -16,9 +16,14 @@ pub fn note(last: &FinalFit) -> Option<String> {
         let described = &study.data.arm.joints()[joint];
         for (recording, more) in study.own_levels(fit, joint) {
             if more.abs() > OTHER_FRICTION * study.data.scales.torque[joint] {
-                let name = &study.data.motions.sources[recording].name;
+                let motions = &study.data.motions;
+                let name = &motions.sources[recording].name;
+                let with = match motions.groups.iter().filter(|&&group| group == recording).count() {
+                    ..2 => String::new(),
+                    count => format!(" and the next {}", count - 1),
+                };
                 let unit = Quantity::Torque.unit(described.kind);
-                differences.push(format!("{}: {more:+.2} {unit} in {name}", described.name));
+                differences.push(format!("{}: {more:+.2} {unit} in {name}{with}", described.name));
             }
         }
     }

@@ -137,8 +137,10 @@ impl<'a> Prospect<'a> {
         let seconds = chunk.period * chunk.stride as f64;
         let mut source = data.motions.sources[self.template].clone();
         (source.held_out, source.own_load_until) = (false, f64::NEG_INFINITY);
+        let this = data.motions.sources.len();
         let motions = Motions {
             changed_at: None,
+            groups: data.motions.groups.iter().copied().chain([this]).collect(),
             dof,
             chunks: vec![chunk],
             sources: data.motions.sources.iter().cloned().chain([source]).collect(),
@@ -185,6 +187,7 @@ impl<'a> Prospect<'a> {
             known: Vec::new(),
             // The own friction of another recording is not that of the motion.
             recording: self.last.study.data.motions.sources.len(),
+            group: self.last.study.data.motions.sources.len(),
             period,
             kernel,
             stride,

@@ -59,6 +59,8 @@ pub struct Table {
     pub rows: Vec<Range<usize>>,
     /// Whether each recording is from before a change.
     pub before: Vec<bool>,
+    /// The first recording of the group of each, whose inner products are summed.
+    pub groups: Vec<usize>,
     /// Another one whenever inner products change.
     identity: Arc<()>,
     /// The same one as long as columns are only added.
@@ -129,11 +131,18 @@ impl Table {
                     }));
                 }
                 let count = rows.iter().map(|range| moves[range.clone()].iter().filter(|&&m| m).count()).collect();
-                let stretches = Stretch::of(&rows, &held_out, &before, &moves);
+                let stretches = Stretch::of(&rows, &motions.groups, &held_out, &before, &moves);
                 JointTable { y, x: Vec::new(), moving: moves, stretches, count }
             })
             .collect();
-        let mut table = Self { place: vec![Vec::new(); motions.dof], joints, rows, before, ..Self::default() };
+        let mut table = Self {
+            place: vec![Vec::new(); motions.dof],
+            joints,
+            rows,
+            before,
+            groups: motions.groups.clone(),
+            ..Self::default()
+        };
         table.add(motions, rigid, scales, terms, None);
         table
     }

@@ -238,8 +238,10 @@ fn may_be_own_friction(study: &Study, judged: &Judged, member: &judge::Member) -
     let is_warming = |column: usize| study.table.terms[column].is(&WARMING) && candidate.columns.contains(&column);
     let columns: Vec<usize> = fit.selected().iter().copied().filter(|&column| !is_warming(column)).collect();
     let moves = |&recording: &usize| study.data.fitted[recording] && study.table.joints[joint].count[recording] > 0;
-    let recordings = (0..study.data.fitted.len()).filter(moves);
-    let levels = recordings.map(|recording| Term::on(&OWN_FRICTION, joint).of(recording)).collect();
+    let mut recordings: Vec<usize> =
+        (0..study.data.fitted.len()).filter(moves).map(|recording| study.data.motions.groups[recording]).collect();
+    recordings.dedup();
+    let levels = recordings.into_iter().map(|recording| Term::on(&OWN_FRICTION, joint).of(recording)).collect();
     let with = study.fit_with(fit.selected(), Vec::new(), &fit.weights);
     let level = study.fit_with(&columns, levels, &fit.weights);
     level.loss - with.loss < LEAST_WITHIN_RECORDINGS

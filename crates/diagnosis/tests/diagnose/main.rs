@@ -15,6 +15,7 @@ mod hidden;
 mod hypothesis;
 mod known;
 mod loads;
+mod many_recordings;
 mod masses;
 mod mounting;
 mod next;

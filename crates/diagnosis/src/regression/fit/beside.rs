@@ -56,7 +56,7 @@ mod tests {
             .map(|row| 1.3 * x[0][row] + 0.9 * x[1][row] + 0.3 * (f64::from(row as u32) * 0.7).sin())
             .collect();
         let rows = 0..y.len();
-        let mut stretches = Stretch::of(std::slice::from_ref(&rows), &[true], &[false], &vec![true; y.len()]);
+        let mut stretches = Stretch::of(std::slice::from_ref(&rows), &[0], &[true], &[false], &vec![true; y.len()]);
         stretches[0].refresh(&x, &y);
         let mut table = Table::bare([&SIGN, &VELOCITY].map(|law| Term::on(law, 0)).to_vec(), 1);
         table.rows.push(rows);

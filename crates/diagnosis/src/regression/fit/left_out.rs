@@ -90,8 +90,10 @@ impl Products {
     /// joints. A recording that is alone on its side of a change is divided: without it, nothing would show what changed.
     fn groups<'a>(&self, table: &'a Table, joint: usize, common: bool) -> Vec<Vec<&'a Stretch>> {
         let this = &table.joints[joint];
-        let excited: Vec<usize> = self.recordings.iter().copied().filter(|&r| common || this.count[r] > 0).collect();
         let of = |recording: usize| this.stretches.iter().filter(move |stretch| stretch.recording == recording);
+        let is_first = |recording: usize| table.groups.get(recording).is_none_or(|&first| first == recording);
+        let moves = |&r: &usize| is_first(r) && (common || of(r).next().is_some());
+        let excited: Vec<usize> = self.recordings.iter().copied().filter(moves).collect();
         if let [only] = excited[..] {
             return of(only).map(|stretch| vec![stretch]).collect();
         }

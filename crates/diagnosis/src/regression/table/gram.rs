@@ -11,10 +11,10 @@ use crate::thresholds::STRETCHES;
 /// The number of new columns whose inner products are formed together; only those with columns up to them are needed.
 const TOGETHER: usize = 64;
 
-/// A recording, or a stretch of it, in which one joint moves.
+/// A recording, a group of several, or a stretch of one, in which one joint moves.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// The recording that it is of.
+    /// The recording that it is of, or the first one of the group.
     pub recording: usize,
     /// Inner products over its moving rows.
     pub gram: Gram,
@@ -29,11 +29,19 @@ fn runs(rows: &[usize]) -> Vec<Range<usize>> {
 }
 
 impl Stretch {
-    /// The stretches of a joint that is `moving` on some rows: the recordings, whose rows are `recordings`. If only one
+    /// The stretches of a joint that is `moving` on some rows: the `groups` of the recordings, whose rows are `recordings`. If only one
     /// training recording moves the joint, or only one of those on its side of a change (`before`: those from before it), it is divided.
-    pub fn of(recordings: &[Range<usize>], held_out: &[bool], before: &[bool], moving: &[bool]) -> Vec<Self> {
-        let rows_of = |range: &Range<usize>| -> Vec<usize> { range.clone().filter(|&row| moving[row]).collect() };
-        let rows: Vec<Vec<usize>> = recordings.iter().map(rows_of).collect();
+    pub fn of(
+        recordings: &[Range<usize>],
+        groups: &[usize],
+        held_out: &[bool],
+        before: &[bool],
+        moving: &[bool],
+    ) -> Vec<Self> {
+        let mut rows: Vec<Vec<usize>> = vec![Vec::new(); recordings.len()];
+        for (range, &group) in recordings.iter().zip(groups) {
+            rows[group].extend(range.clone().filter(|&row| moving[row]));
+        }
         let is_fitted = |r: &usize| !held_out[*r] && !rows[*r].is_empty();
         let is_alone =
             |r: usize| (0..rows.len()).filter(is_fitted).filter(|&other| before[other] == before[r]).count() == 1;
@@ -196,10 +204,14 @@ mod tests {
     fn a_recording_alone_on_its_side_is_divided() {
         let recordings = [0..100, 100..200, 200..300];
         let pieces = |before: [bool; 3], held_out: [bool; 3]| -> [usize; 3] {
-            let stretches = Stretch::of(&recordings, &held_out, &before, &[true; 300]);
+            let stretches = Stretch::of(&recordings, &[0, 1, 2], &held_out, &before, &[true; 300]);
             [0, 1, 2].map(|recording| stretches.iter().filter(|stretch| stretch.recording == recording).count())
         };
         let fitted = [false; 3];
+        let grouped = Stretch::of(&recordings, &[0, 0, 2], &fitted, &fitted, &[true; 300]);
+        let of: Vec<(usize, Range<usize>)> =
+            grouped.iter().map(|stretch| (stretch.recording, stretch.runs[0].clone())).collect();
+        assert_eq!(of, [(0, 0..200), (2, 200..300)]);
         assert_eq!(pieces([false; 3], fitted), [1, 1, 1]);
         assert_eq!(pieces([true, true, false], fitted), [1, 1, STRETCHES]);
         assert_eq!(pieces([true, false, false], fitted), [STRETCHES, 1, 1]);

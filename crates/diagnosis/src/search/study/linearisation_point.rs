@@ -186,6 +186,7 @@ mod tests {
         };
         let chunk = Chunk {
             recording: 0,
+            group: 0,
             start: 0.0,
             period: 0.01,
             q: signal(0.0),

@@ -23,14 +23,14 @@ const IN_PLACE: usize = 3;
 /// strengths could alternate forever.
 const MOST_MOVES: usize = 24;
 
-/// The training recordings that move each joint.
+/// The training recordings that move each joint: the first one of each group.
 pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
     let of = |joint: usize| {
         let moves = |chunk: &&Chunk| {
             let fitted = !motions.sources[chunk.recording].held_out;
             fitted && chunk.qd[joint].iter().any(|qd| qd.abs() > MOVED * scales.rest[joint])
         };
-        let mut list: Vec<usize> = motions.chunks.iter().filter(moves).map(|chunk| chunk.recording).collect();
+        let mut list: Vec<usize> = motions.chunks.iter().filter(moves).map(|chunk| chunk.group).collect();
         list.dedup();
         list
     };
