@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::motion::Motion;
 use crate::trajectory::Trajectory;
 
 /// One sine of every joint: amplitude sin(2π frequency t + phase).
@@ -37,24 +38,6 @@ pub struct Reference {
     pub sines: Vec<Sine>,
     /// The fade-in and fade-out; `None` starts and ends in full motion.
     pub fade: Option<Fade>,
-}
-
-/// Position, velocity and acceleration of every joint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
-    /// rad or m.
-    pub q: Vec<f64>,
-    /// rad/s or m/s.
-    pub qd: Vec<f64>,
-    /// rad/s² or m/s².
-    pub qdd: Vec<f64>,
-}
-
-impl Motion {
-    /// At rest at position zero.
-    pub fn new(dof: usize) -> Self {
-        Self { q: vec![0.0; dof], qd: vec![0.0; dof], qdd: vec![0.0; dof] }
-    }
 }
 
 impl Reference {

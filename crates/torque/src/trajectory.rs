@@ -1,6 +1,6 @@
 //! A recorded motion that a reference can follow.
 
-use crate::reference::Motion;
+use crate::motion::Motion;
 
 /// Positions at equal times with their first two derivatives. Between two times, the motion is the polynomial of fifth degree with the
 /// values and derivatives on both sides, so that position, velocity and acceleration are continuous.
