@@ -159,8 +159,17 @@ fn expand(path: &Path, name: &'static str, head: Vec<u8>, rest: File) -> Result<
         "gzip" => Box::new(flate2::read::MultiGzDecoder::new(source)),
         _ => Box::new(zstd::stream::read::Decoder::new(source).map_err(broken)?),
     };
-    let no_room = |reason: std::io::Error| error(format!("there is no room to expand it ({reason}); free some space"));
-    let mut expanded = tempfile::tempfile().map_err(no_room)?;
+    let folder = std::env::temp_dir();
+    let no_room = |reason: std::io::Error| {
+        error(format!("there is no room to expand it in {} ({reason}); free some space there", folder.display()))
+    };
+    let no_folder = |reason: std::io::Error| {
+        error(format!(
+            "it cannot be expanded in the folder of temporary files, {} ({reason}); set TMPDIR to a folder that you may write to",
+            folder.display()
+        ))
+    };
+    let mut expanded = tempfile::tempfile().map_err(no_folder)?;
     let mut buffer = vec![0; 1 << 18];
     let mut total: u64 = 0;
     loop {

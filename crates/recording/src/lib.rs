@@ -54,6 +54,7 @@ mod series;
 mod spikes;
 mod stamp;
 pub mod statistics;
+mod stray;
 mod table;
 mod thinned;
 mod toml_error;

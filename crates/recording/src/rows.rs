@@ -7,6 +7,7 @@ use crate::gathered::{Gathered, State};
 use crate::header::Plan;
 use crate::location::Location;
 use crate::stamp::Stamps;
+use crate::stray::{Ends, too_long};
 use crate::table::{Cell, Row};
 use crate::thinned::Thinned;
 use crate::warning::RUN_PAUSE;
@@ -47,6 +48,7 @@ pub struct Rows<'a> {
     runs: usize,
     warnings: Vec<Warning>,
     stamps: Stamps,
+    ends: Ends,
     /// The stamp of the previous row in the file (s), and the time that it got (s).
     stamp: f64,
     placed: f64,
@@ -84,6 +86,7 @@ impl<'a> Rows<'a> {
             runs: 1,
             warnings: Vec::new(),
             stamps: Stamps::default(),
+            ends: Ends::default(),
             stamp: f64::NAN,
             placed: f64::NEG_INFINITY,
             first: f64::NAN,
@@ -125,6 +128,7 @@ impl<'a> Rows<'a> {
         } else if self.in_run == 0 {
             self.first = stamp;
         }
+        self.ends.add(row.place, stamp, begins);
         self.in_run = if begins { 1 } else { self.in_run + 1 };
         self.stamp = stamp;
         // Rows with one stamp keep their order, and the clock finds their ticks.
@@ -291,6 +295,9 @@ impl<'a> Rows<'a> {
                 ),
             ));
         }
+        if let Some((place, reason)) = self.ends.jumped(stamp) {
+            return Err(RecordingError::Row { path: self.path.to_owned(), place, reason });
+        }
         let before = self.stamp;
         self.shift += self.stamp + RUN_PAUSE - stamp;
         self.first = stamp;
@@ -345,7 +352,14 @@ impl<'a> Rows<'a> {
             Some(missing(self.path, channel, *place, found.clone()))
         });
         let left_out = self.values.left_out();
-        let (columns, breaks, span) = self.values.finish();
+        let (mut columns, mut breaks, span) = self.values.finish();
+        let mut epoch = self.stamps.epoch();
+        if span.is_none() && left_out == 0.0 {
+            self.warnings.extend(self.ends.leave_out(&mut columns, &mut breaks, &mut epoch));
+        }
+        if let Some(reason) = too_long(columns[0][0], columns[0][columns[0].len() - 1]) {
+            return Err(RecordingError::Header { path, has_lines: self.has_lines, reason });
+        }
         if let Some(span) = span {
             let kept = columns[0].len();
             self.warnings.push(Warning::Thinned { rows, kept, span });
@@ -357,7 +371,7 @@ impl<'a> Rows<'a> {
             states: self.states,
             numeric: self.numeric,
             warnings: self.warnings,
-            epoch: self.stamps.epoch(),
+            epoch,
             left_out,
         };
         let recording = gathered.into_recording();

@@ -7,7 +7,7 @@ use crate::table::{Cell, Row};
 
 /// Stamps after this time (s) are dates. They are counted from the whole second of the first one, because a double
 /// cannot hold both the date and its fraction exactly.
-const CALENDAR: i64 = 1_000_000;
+pub const CALENDAR: i64 = 1_000_000;
 const NANOS: i64 = 1_000_000_000;
 
 /// The stamps of one file, in the order of its rows.

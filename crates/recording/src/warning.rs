@@ -6,6 +6,10 @@ use serde::Serialize;
 
 use crate::{Location, Quantity};
 
+mod digits;
+
+use digits::short;
+
 /// The pause that is assumed between two runs if their clocks do not determine it (s).
 pub(crate) const RUN_PAUSE: f64 = 1.0;
 
@@ -65,6 +69,15 @@ pub enum Warning {
         samples: usize,
         /// The number of rows for which most positions are held.
         held: usize,
+    },
+    /// The first or the last row has a time stamp far from all others; it was omitted.
+    StrayStamp {
+        /// Its line or row.
+        line: Location,
+        /// Its stamp (s).
+        stamp: f64,
+        /// The stamp of the row beside it (s).
+        next: f64,
     },
     /// The time starts again: the file contains several runs.
     ClockRestart {
@@ -257,6 +270,10 @@ impl fmt::Display for Warning {
                 f,
                 "positions change in one of {held} rows only, other signals more often: {samples} of {rows} rows, with new positions, are used"
             ),
+            Self::StrayStamp { line, stamp, next } => write!(
+                f,
+                "{line}: the time stamp of {stamp} s is far from all others (the next one is {next} s): the row is left out"
+            ),
             Self::ClockRestart { line, before, after, placed } => write!(
                 f,
                 "{line}: time starts again ({before} s, then {after} s): treated as another run, placed at {placed:.6} s"
@@ -374,17 +391,6 @@ impl fmt::Display for Warning {
                 )
             }
         }
-    }
-}
-
-/// Four significant digits, with an exponent only for very small and very large values.
-fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 || (1e-3..1e4).contains(&magnitude) {
-        let digits = if value == 0.0 { 0.0 } else { 3.0 - magnitude.log10().floor() };
-        format!("{value:.*}", digits.max(0.0) as usize)
-    } else {
-        format!("{value:.3e}")
     }
 }
 

@@ -39,8 +39,18 @@ pub fn write_whole(
     attempt().map_err(|reason| RecordingError::Write { path: path.to_owned(), reason: of_system(reason) })
 }
 
-/// The system's error, from which the remedy is known, without those of libraries around it (of a CSV, of a temporary file).
+/// The system's error, from which the remedy is known, without those of libraries around it (of a CSV, of a temporary file, whose name
+/// says nothing).
 fn of_system(error: std::io::Error) -> std::io::Error {
+    use std::io::ErrorKind::{FileTooLarge, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+    // A temporary file's error does not give its source.
+    let says_all = |error: &std::io::Error| {
+        let known = [FileTooLarge, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull];
+        (error.raw_os_error().is_none() && known.contains(&error.kind())).then(|| error.kind().into())
+    };
+    if let Some(plain) = says_all(&error) {
+        return plain;
+    }
     let mut next: Option<&(dyn std::error::Error + 'static)> = error.get_ref().map(|inner| inner as _);
     while let Some(inner) = next {
         // A CSV's error does not give its source.
@@ -51,6 +61,9 @@ fn of_system(error: std::io::Error) -> std::io::Error {
         };
         if let Some(code) = own.and_then(std::io::Error::raw_os_error) {
             return std::io::Error::from_raw_os_error(code);
+        }
+        if let Some(plain) = own.and_then(says_all) {
+            return plain;
         }
         next = own.map_or_else(|| inner.source(), std::error::Error::source);
     }
@@ -71,6 +84,20 @@ fn set_ordinary_permissions(_: &std::fs::File) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As of a CSV that is written to a temporary file on a full disk.
+    #[test]
+    fn what_the_system_says_is_found_below_the_libraries() {
+        let kind = std::io::ErrorKind::StorageFull;
+        let of_temporary_file = || std::io::Error::new(kind, "no space at path .partial-abc");
+        let of_csv = std::io::Error::from(csv::Error::from(of_temporary_file()));
+        for error in [of_temporary_file(), of_csv] {
+            let found = of_system(error);
+            assert_eq!(found.kind(), kind);
+            assert!(!found.to_string().contains(".partial"), "{found}");
+        }
+        assert_eq!(of_system(std::io::Error::other("another")).to_string(), "another");
+    }
 
     #[cfg(unix)]
     #[test]

@@ -127,6 +127,27 @@ fn what_spreadsheets_and_mistakes_make_of_a_file_is_refused_with_the_remedy() {
     assert!(found.contains("it is a folder"), "{found}");
 }
 
+/// A clock that is set after the first message, and a glitch of the last one.
+#[test]
+fn rows_with_stray_stamps_are_left_out_or_refused() {
+    let with = |stamp: &dyn Fn(usize) -> f64| -> String {
+        let rows = (0..200).map(|row| format!("{},{},2\n", stamp(row), (0.1 * row as f64).sin()));
+        format!("t,q_a,tau_a\n{}", rows.collect::<String>())
+    };
+    let glitch = |at: usize, to: f64| with(&|row| if row == at { to } else { 1.7e9 + 0.25 * row as f64 });
+    for (at, first, line) in [(0, 0.25, 2), (199, 0.0, 201)] {
+        let read = read(&glitch(at, if at == 0 { 0.0 } else { 9e9 })).expect("it reads");
+        assert_eq!((read.len(), read.time[0], read.epoch), (199, first, Some(1_700_000_000)));
+        let is_stray = |warning: &Warning| matches!(warning, Warning::StrayStamp { line: place, .. } if *place == Location::Line(line));
+        assert!(read.warnings.iter().any(is_stray), "{:?}", read.warnings);
+    }
+    let within = with(&|row| if row == 120 { 1e14 } else { 0.25 * row as f64 });
+    let found = refusal(&within);
+    assert!(found.contains("r.csv:122: its time stamp of 100000000000000 s is between 29.75 s and 30.25 s"), "{found}");
+    let halves = with(&|row| if row < 100 { row as f64 } else { 4e9 + row as f64 });
+    assert!(refusal(&halves).contains("check the column of the time, its unit"), "{}", refusal(&halves));
+}
+
 #[test]
 fn line_ends_marks_and_spaces_of_other_systems_just_work() {
     let plain = read("t,q_a,tau_a\n0,1,2\n1,1.5,2.5\n").expect("it reads");
