@@ -1,6 +1,6 @@
 //! Which joints of a URDF move in the arm, and the positions of the others.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use urdf_rs::JointType;
 
@@ -93,8 +93,7 @@ impl<'a> Reader<'a> {
         self.check_locks(options)?;
         let locked = |joint: &urdf_rs::Joint| options.locks.iter().any(|(name, _)| *name == joint.name);
         let can_move = |joint: &urdf_rs::Joint| is_movable(joint) && joint.mimic.is_none() && !locked(joint);
-        let beyond = |joint: &urdf_rs::Joint| self.path(&joint.child.link, base).is_some();
-        let below: Joints<'a> = self.robot.joints.iter().filter(|joint| beyond(joint)).collect();
+        let below = self.below(base);
         let candidates: Joints<'a> = below.iter().copied().filter(|joint| can_move(joint)).collect();
         let (moving, grippers) = match tip {
             Some(tip) => {
@@ -154,6 +153,19 @@ impl<'a> Reader<'a> {
             }
         }
         Ok(chain)
+    }
+
+    /// The joints below link `base`, in the order of the file.
+    fn below(&self, base: &'a str) -> Joints<'a> {
+        let mut children: HashMap<&str, Vec<&str>> = HashMap::new();
+        for joint in &self.robot.joints {
+            children.entry(&joint.parent.link).or_default().push(&joint.child.link);
+        }
+        let (mut reached, mut open) = (HashSet::from([base]), vec![base]);
+        while let Some(link) = open.pop() {
+            open.extend(children.remove(link).into_iter().flatten().filter(|child| reached.insert(child)));
+        }
+        self.robot.joints.iter().filter(|joint| reached.contains(joint.parent.link.as_str())).collect()
     }
 
     /// The joints from link `base` to link `link`; `None` if `link` is not below `base`.
