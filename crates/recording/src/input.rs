@@ -169,7 +169,10 @@ fn expand(path: &Path, name: &'static str, head: Vec<u8>, rest: File) -> Result<
             folder.display()
         ))
     };
-    let mut expanded = tempfile::tempfile().map_err(no_folder)?;
+    let mut expanded = tempfile::tempfile().map_err(|reason| match reason.kind() {
+        std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => no_room(reason),
+        _ => no_folder(reason),
+    })?;
     let mut buffer = vec![0; 1 << 18];
     let mut total: u64 = 0;
     loop {

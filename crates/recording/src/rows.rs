@@ -295,7 +295,7 @@ impl<'a> Rows<'a> {
                 ),
             ));
         }
-        if let Some((place, reason)) = self.ends.jumped(stamp) {
+        if let Some((place, reason)) = self.ends.jumped(stamp, self.stamps.epoch()) {
             return Err(RecordingError::Row { path: self.path.to_owned(), place, reason });
         }
         let before = self.stamp;
@@ -352,10 +352,10 @@ impl<'a> Rows<'a> {
             Some(missing(self.path, channel, *place, found.clone()))
         });
         let left_out = self.values.left_out();
-        let (mut columns, mut breaks, span) = self.values.finish();
+        let (mut columns, breaks, span) = self.values.finish();
         let mut epoch = self.stamps.epoch();
-        if span.is_none() && left_out == 0.0 {
-            self.warnings.extend(self.ends.leave_out(&mut columns, &mut breaks, &mut epoch));
+        if breaks.is_empty() {
+            self.warnings.extend(self.ends.leave_out(&mut columns, &mut epoch));
         }
         if let Some(reason) = too_long(columns[0][0], columns[0][columns[0].len() - 1]) {
             return Err(RecordingError::Header { path, has_lines: self.has_lines, reason });

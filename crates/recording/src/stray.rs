@@ -36,7 +36,7 @@ pub struct Ends {
 struct Stray {
     /// Its line or row.
     place: Location,
-    /// Its stamp (s).
+    /// Its stamp, from the epoch on (s).
     stamp: f64,
     /// The stamp of the row beside it (s).
     next: f64,
@@ -56,8 +56,10 @@ impl Ends {
 
     /// Why the row before, after which time goes back to `stamp`, has a stray stamp; `None` if a run begins with `stamp` instead: a run
     /// begins earlier than the row before the last one.
-    pub fn jumped(&self, stamp: f64) -> Option<(Location, String)> {
+    /// Stamps count from the `epoch` (s).
+    pub fn jumped(&self, stamp: f64, epoch: Option<i64>) -> Option<(Location, String)> {
         let [Some(last), Some(before)] = self.last else { return None };
+        let short = |stamp: f64| short(stamp + epoch.unwrap_or(0) as f64);
         let text = || {
             format!(
                 "its time stamp of {} s is between {} s and {} s, so that it is wrong; delete the row, or correct the stamp",
@@ -69,23 +71,30 @@ impl Ends {
         (stamp > before.stamp).then(|| (last.place, text()))
     }
 
-    /// Leaves the rows with stray stamps out of the `columns`, the time first, and of the first rows of further runs; the `epoch` (s) becomes
-    /// that of the first remaining row.
-    pub fn leave_out(&self, columns: &mut [Vec<f64>], breaks: &mut [usize], epoch: &mut Option<i64>) -> Vec<Warning> {
+    /// Leaves the rows with stray stamps out of the `columns` of a single run, the time first, unless they are not among its rows, or are a
+    /// part of a mean; the `epoch` (s), from which stamps count, becomes that of the first remaining row.
+    pub fn leave_out(&self, columns: &mut [Vec<f64>], epoch: &mut Option<i64>) -> Vec<Warning> {
         let [first, last] = self.strays();
+        let is_row = |stray: &Stray, time: Option<&f64>| time == Some(&stray.stamp);
+        let first = first.filter(|stray| is_row(stray, columns[0].first()));
+        let last = last.filter(|stray| is_row(stray, columns[0].last()));
+        let before = epoch.unwrap_or(0);
         for column in &mut *columns {
             column.truncate(column.len() - usize::from(last.is_some()));
             column.drain(..usize::from(first.is_some()));
         }
         if first.is_some() {
-            breaks.iter_mut().for_each(|at| *at -= 1);
-            let before = epoch.unwrap_or(0);
             let begin = before + columns[0][0].floor() as i64;
             *epoch = Some(begin).filter(|begin| begin.abs() > CALENDAR);
             let shift = (before - epoch.unwrap_or(0)) as f64;
             columns[0].iter_mut().for_each(|time| *time += shift);
         }
-        let warning = |Stray { place, stamp, next }| Warning::StrayStamp { line: place, stamp, next };
+        let in_file = |stamp: f64| stamp + before as f64;
+        let warning = |Stray { place, stamp, next }| Warning::StrayStamp {
+            line: place,
+            stamp: in_file(stamp),
+            next: in_file(next),
+        };
         [first, last].into_iter().flatten().map(warning).collect()
     }
 
@@ -148,10 +157,10 @@ mod tests {
     #[test]
     fn time_that_goes_on_after_a_jump_is_no_further_run() {
         let jumped = ends(steps(100).chain([1e4]));
-        let (place, text) = jumped.jumped(6.0).expect("it goes on");
+        let (place, text) = jumped.jumped(6.0, None).expect("it goes on");
         assert_eq!(place, Location::Line(102));
         assert!(text.contains("10000 s is between 5.99 s and 6 s"), "{text}");
-        assert!(jumped.jumped(5.0).is_none(), "a run begins");
+        assert!(jumped.jumped(5.0, None).is_none(), "a run begins");
     }
 
     #[test]

@@ -272,7 +272,7 @@ impl fmt::Display for Warning {
             ),
             Self::StrayStamp { line, stamp, next } => write!(
                 f,
-                "{line}: the time stamp of {stamp} s is far from all others (the next one is {next} s): the row is left out"
+                "{line}: the time stamp of {stamp} s is far from all others (the one beside it is {next} s): the row is left out"
             ),
             Self::ClockRestart { line, before, after, placed } => write!(
                 f,

@@ -1,7 +1,7 @@
 //! Scenarios: a robot that follows a reference under a controller.
 
 mod raw;
-mod recorded;
+pub mod recorded;
 mod validate;
 pub mod writer;
 

@@ -9,6 +9,7 @@ use torque::{Motion, Reference, Samples};
 
 use crate::cli::ChainArgs;
 use crate::scenario::Scenario;
+use crate::scenario::recorded::columns;
 use crate::sensors::Sensors;
 use study::named;
 
@@ -168,23 +169,6 @@ fn read_recording(path: &Path, arm: &Arm) -> anyhow::Result<Recording> {
         ),
         other => other.into(),
     })
-}
-
-/// The indices of the joints of `arm`, in its order, among those of `recording`.
-///
-/// # Errors
-/// If the recording lacks one.
-pub fn columns(recording: &Recording, arm: &Arm) -> anyhow::Result<Vec<usize>> {
-    let column = |joint: &arm::Joint| {
-        let index = recording.joints.iter().position(|name| *name == joint.name);
-        index.with_context(|| {
-            format!(
-                "it has no column \"q_{}\"; give a recording of the scenario's robot, or name its columns as the URDF names the joints",
-                joint.name
-            )
-        })
-    };
-    arm.joints().iter().map(column).collect()
 }
 
 fn recording_samples(scenario: &Scenario, recording: &Recording, samples: &mut Samples) -> anyhow::Result<()> {

@@ -30,14 +30,14 @@ impl Trajectory {
         self.period * (self.points.len() - 1) as f64
     }
 
-    /// Adds the motion of every joint at `time` (s), relative to its first position, to `motion`. Before the first point and after the
-    /// last one, it stands still there.
+    /// Adds the motion of every joint at `time` (s), relative to its first position, to `motion`. More than a period before the first point
+    /// and after the last one, it stands still there.
     pub fn add_to(&self, time: f64, motion: &mut Motion) {
         let last = self.points.len() - 1;
         let place = (time / self.period).clamp(0.0, last as f64);
         let from = (place.floor() as usize).min(last.saturating_sub(1));
         let (a, b) = (&self.points[from], &self.points[(from + 1).min(last)]);
-        let rests = time < 0.0 || time > self.duration();
+        let rests = time < -self.period || time > self.duration() + self.period;
         let (x, h) = (place - from as f64, self.period);
         for (joint, start) in self.start().iter().enumerate() {
             // The coefficients of x³, x⁴ and x⁵ follow from the values at x = 1.

@@ -159,7 +159,7 @@ impl Conclusion {
             torque_constants::note_on_alike(study, &judged.named),
             coupling::note(study, &judged.named),
             torque_lag::note_on_short(table, resampled),
-            slower_filter(&data.motions, &unexplained).filter(|_| options.cutoff.is_none()),
+            slower_filter(&data.motions, &unexplained).filter(|_| options.cutoff.is_none() && options.only.is_none()),
             sentences::constant_torques(&constant_torques::reported(study, &constants)),
         ];
         let placeholders = sentences::placeholders(&data.arm, &study.strengths.least);

@@ -337,8 +337,8 @@ pub fn look_behind_the_drive(joint: &str) -> String {
 /// The advice to diagnose again through a slower filter.
 pub fn slower_filter(joints: &[&str], cutoff: f64, slower: f64) -> String {
     format!(
-        "no model describes the fast torque after impacts in a gear, which hides its slower part: the residual of {} was filtered at \
-         {cutoff:.1} Hz; --cutoff {slower:.1} may show its cause. A name that is only found there is a supposition",
+        "residuals of {} stay unexplained with a filter of {cutoff:.1} Hz. Impacts in a gear, which no model describes, would hide their \
+         slower part: --cutoff {slower:.1} may show the cause; a name that is only found there is a supposition",
         joints.join(", ")
     )
 }

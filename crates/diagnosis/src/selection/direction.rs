@@ -64,7 +64,8 @@ impl Constants {
     /// friction is the same in all of them, or if the joint has no dry friction.
     fn new(study: &Study, selected: &Selection, member: usize, joint: usize) -> Option<Self> {
         let mut recordings = moved(&study.data.motions, &study.data.scales).swap_remove(joint);
-        recordings.retain(|&recording| study.table.joints[joint].count[recording] > 0);
+        let stretches = &study.table.joints[joint].stretches;
+        recordings.retain(|&recording| stretches.iter().any(|stretch| stretch.recording == recording));
         if recordings.len() < 2 || study.strengths.between_recordings(joint) <= 0.0 {
             return None;
         }

@@ -1,6 +1,7 @@
 //! The inertia of a drive against that of a body on its link.
 //!
-//! Both have the same torque on the joint itself. A body also has one on the joints before it, a drive has none.
+//! Both have the same torque on the joint itself. A body also has one on the joints before it, a drive has none. The body here has inertia
+//! about the joint's axis alone; any real one has more torque on the joints before.
 
 use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;

@@ -240,6 +240,7 @@ fn may_be_own_friction(study: &Study, judged: &Judged, member: &judge::Member) -
     let moves = |&recording: &usize| study.data.fitted[recording] && study.table.joints[joint].count[recording] > 0;
     let mut recordings: Vec<usize> =
         (0..study.data.fitted.len()).filter(moves).map(|recording| study.data.motions.groups[recording]).collect();
+    recordings.sort_unstable();
     recordings.dedup();
     let levels = recordings.into_iter().map(|recording| Term::on(&OWN_FRICTION, joint).of(recording)).collect();
     let with = study.fit_with(fit.selected(), Vec::new(), &fit.weights);

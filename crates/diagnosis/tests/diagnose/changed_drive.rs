@@ -41,5 +41,7 @@ fn an_inertia_of_a_drive_that_changed_needs_the_joints_before_it() {
             (finding.effect, finding.joint.as_deref()) == ("rotor_inertia", Some("elbow")) && finding.change.is_some()
         };
         assert_eq!(diagnosis.report.findings.iter().any(is_it), is_named, "{:?}", sentences(&diagnosis));
+        let refused = diagnosis.trace.iter().any(|row| row.rule.starts_with("a body on its link explains as much"));
+        assert_eq!(refused, !is_named);
     }
 }

@@ -5,26 +5,47 @@ use std::path::Path;
 use anyhow::{Context, bail, ensure};
 use arm::Arm;
 use diagnosis::{Kernel, LARGEST_CUTOFF};
+use recording::Recording;
 use study::named;
 use torque::{Motion, Trajectory};
 
-use crate::training::columns;
+/// The indices of the joints of `arm`, in its order, among those of `recording`.
+///
+/// # Errors
+/// If the recording lacks one.
+pub fn columns(recording: &Recording, arm: &Arm) -> anyhow::Result<Vec<usize>> {
+    let column = |joint: &arm::Joint| {
+        let index = recording.joints.iter().position(|name| *name == joint.name);
+        index.with_context(|| {
+            format!(
+                "it has no column \"q_{}\"; give a recording of the scenario's robot, or name its columns as the URDF names the joints",
+                joint.name
+            )
+        })
+    };
+    arm.joints().iter().map(column).collect()
+}
 
-/// The motion of the recording at `path`, with the joints of `arm` in its order. Positions pass a zero-phase low-pass filter with half
+/// The least duration of a recording, in periods of the cut-off: the filter needs 2.34 of them.
+const LEAST_PERIODS: f64 = 3.0;
+
+/// The motion of the recording at `path`, with the joints of `arm` in its order, and what is doubtful about it. Positions pass a zero-phase low-pass filter with half
 /// its power at `cutoff` (Hz); velocities and accelerations are the derivatives of the filtered positions. The filter takes a moment from
 /// both ends of the recording.
 ///
 /// # Errors
 /// If the recording cannot be read, lacks a joint, has a long gap, or is too short for the filter.
-pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<Trajectory> {
+pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<(Trajectory, Vec<String>)> {
     let recording = named::read(path, None, Some(arm))?;
-    let (regular, _) = recording.regular()?;
+    let (regular, warnings) = recording.regular()?;
+    let doubts =
+        recording.warnings.iter().chain(&warnings).map(|doubt| format!("{}: {doubt}", path.display())).collect();
     let of_file = || path.display().to_string();
     let columns = columns(&recording, arm).with_context(of_file)?;
     if let [first, second, ..] = &regular.segments[..] {
         let end = regular.time(first.ticks.end - 1);
         bail!(
-            "{}: no rows from {end:.3} s to {:.3} s; give a recording without gaps, or the rows on one side of them",
+            "{}: its positions are not continuous from {end:.3} s to {:.3} s (a gap, a jump, or another run); give the rows on one side of that",
             path.display(),
             second.start
         );
@@ -32,17 +53,17 @@ pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<Traject
     let (rate, most) = (1.0 / regular.period, LARGEST_CUTOFF / regular.period);
     ensure!(
         cutoff <= most,
-        "{}: its rows are {rate:.1} Hz apart, which allows a reference.cutoff of at most {most:.2} Hz, but it is {cutoff} Hz",
+        "{}: it has {rate:.1} rows a second, which allows a reference.cutoff of at most {most:.2} Hz, but it is {cutoff} Hz",
         path.display()
     );
-    let kernel = Kernel::new(cutoff, regular.period);
-    let needed = 2 * kernel.reach() + 2;
+    let seconds = regular.period * regular.len() as f64;
     ensure!(
-        regular.len() >= needed,
-        "{}: it has {} rows, but a filter of {cutoff} Hz needs {needed}; give a longer recording, or a higher reference.cutoff",
+        cutoff * seconds >= LEAST_PERIODS,
+        "{}: it has {seconds:.3} s, but a filter of {cutoff} Hz needs {:.3} s; give a longer recording, or a higher reference.cutoff",
         path.display(),
-        regular.len()
+        LEAST_PERIODS / cutoff
     );
+    let kernel = Kernel::new(cutoff, regular.period);
     let filtered: Vec<[Vec<f64>; 3]> = columns
         .iter()
         .map(|&column| {
@@ -54,8 +75,8 @@ pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<Traject
         let of = |order: usize| filtered.iter().map(|joint| joint[order][tick]).collect();
         Motion { q: of(0), qd: of(1), qdd: of(2) }
     };
-    let points = (0..=regular.len() - needed + 1).map(point).collect();
-    Trajectory::new(regular.period, points).with_context(of_file)
+    let points = (0..filtered[0][0].len()).map(point).collect();
+    Ok((Trajectory::new(regular.period, points).with_context(of_file)?, doubts))
 }
 
 #[cfg(test)]
@@ -132,7 +153,7 @@ mod tests {
             (whole(), "file = \"motion.csv\"\ncutoff = -1.0", "give more than 0"),
             ((0..500).collect(), file, "give a duration of at most that"),
             ((0..20).collect(), file, "give a longer recording"),
-            ((0..500).chain(900..1500).collect(), file, "give a recording without gaps"),
+            ((0..500).chain(900..1500).collect(), file, "give the rows on one side"),
         ] {
             let error = refused(rows, table);
             assert!(error.contains(expected) && error.contains("follow.toml:"), "{table}: {error}");

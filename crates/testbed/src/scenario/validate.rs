@@ -80,7 +80,7 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
             format!("model.inertia_scale is {inertia_scale}; give a positive factor, 1 for no error")
         })?;
     }
-    let reference = check.reference(&raw.reference, sample_rate.min(control_rate), duration)?;
+    let (reference, doubts) = check.reference(&raw.reference, sample_rate.min(control_rate), duration)?;
     let kp = check.not_negative("controller.kp", raw.controller.kp.as_ref(), KP)?;
     let kd = check.not_negative("controller.kd", raw.controller.kd.as_ref(), KD)?;
     let feedback = match raw.controller.feedback.as_ref().map(|f| (f, f.get_ref().as_str())) {
@@ -105,7 +105,7 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
     }
     let built_in = robot::is_built_in(raw.robot.get_ref());
     let notes = if built_in { Vec::new() } else { arm.warnings().to_vec() };
-    let notes = notes.iter().map(|note| format!("{}: {note}", urdf.display())).collect();
+    let notes = notes.iter().map(|note| format!("{}: {note}", urdf.display())).chain(doubts).collect();
     let true_arm = arm.clone().with_rotor_inertias(&rotor_inertia);
     if let Some(joint) = true_arm.massless_joint() {
         let joint = &arm.joints()[joint];
@@ -267,10 +267,15 @@ impl Check<'_> {
         Ok(values)
     }
 
-    fn reference(&self, table: &Spanned<RawReference>, rate: f64, duration: f64) -> anyhow::Result<Reference> {
+    fn reference(
+        &self,
+        table: &Spanned<RawReference>,
+        rate: f64,
+        duration: f64,
+    ) -> anyhow::Result<(Reference, Vec<String>)> {
         let raw = table.get_ref();
         let here = || self.source.place(table.span());
-        let recorded = self.recorded(raw, duration)?;
+        let (recorded, doubts) = self.recorded(raw, duration)?.unzip();
         let centre = match &recorded {
             Some(recorded) if raw.centre.is_none() => recorded.start().to_vec(),
             _ => self.joints("reference.centre", raw.centre.as_ref(), 0.0)?,
@@ -319,11 +324,11 @@ impl Check<'_> {
         }
         let end = duration;
         let fade = (seconds > 0.0).then_some(Fade { seconds, end });
-        Ok(Reference { centre, recorded, sines, fade })
+        Ok((Reference { centre, recorded, sines, fade }, doubts.unwrap_or_default()))
     }
 
-    /// The recorded motion that the reference follows for the whole `duration` (s); `None` without a file.
-    fn recorded(&self, raw: &RawReference, duration: f64) -> anyhow::Result<Option<Arc<Trajectory>>> {
+    /// The recorded motion that the reference follows for the whole `duration` (s), and what is doubtful about it; `None` without a file.
+    fn recorded(&self, raw: &RawReference, duration: f64) -> anyhow::Result<Option<(Arc<Trajectory>, Vec<String>)>> {
         let cutoff = self.number("reference.cutoff", raw.cutoff.as_ref(), REFERENCE_CUTOFF)?;
         let Some(file) = &raw.file else {
             let Some(written) = &raw.cutoff else { return Ok(None) };
@@ -336,14 +341,15 @@ impl Check<'_> {
             self.ensure(cutoff > 0.0, written, || format!("reference.cutoff is {cutoff:?} Hz; give more than 0"))?;
         }
         let of_file = || format!("{}: reference.file", self.source.place(file.span()));
-        let recorded = trajectory(&self.folder.join(file.get_ref()), self.arm, cutoff).with_context(of_file)?;
-        self.ensure(duration <= recorded.duration(), file, || {
+        let (recorded, doubts) =
+            trajectory(&self.folder.join(file.get_ref()), self.arm, cutoff).with_context(of_file)?;
+        let most = (1e3 * recorded.duration() + 1e-6).floor() / 1e3;
+        self.ensure(duration <= most, file, || {
             format!(
-                "reference.file \"{}\" has {:.3} s of motion, without what its filter needs at both ends; give a duration of at most that",
-                file.get_ref().display(),
-                recorded.duration()
+                "reference.file \"{}\" has {most:.3} s of motion, without what its filter needs at both ends; give a duration of at most that",
+                file.get_ref().display()
             )
         })?;
-        Ok(Some(Arc::new(recorded)))
+        Ok(Some((Arc::new(recorded), doubts)))
     }
 }

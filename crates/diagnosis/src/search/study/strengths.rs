@@ -31,6 +31,7 @@ pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
             fitted && chunk.qd[joint].iter().any(|qd| qd.abs() > MOVED * scales.rest[joint])
         };
         let mut list: Vec<usize> = motions.chunks.iter().filter(moves).map(|chunk| chunk.group).collect();
+        list.sort_unstable();
         list.dedup();
         list
     };
