@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, ensure};
 use arm::Arm;
 use diagnosis::{Kernel, LARGEST_CUTOFF};
-use recording::Recording;
+use recording::{Recording, RegularRecording};
 use study::named;
 use torque::{Motion, Trajectory};
 
@@ -26,6 +26,10 @@ pub fn columns(recording: &Recording, arm: &Arm) -> anyhow::Result<Vec<usize>> {
     arm.joints().iter().map(column).collect()
 }
 
+/// The longest gap that is filled, in periods of the cut-off.
+const GAP: f64 = 0.5;
+/// A step across a gap is a jump if it is larger than this multiple of the largest step elsewhere.
+const JUMP: f64 = 2.0;
 /// The least duration of a recording, in periods of the cut-off: the filter needs 2.34 of them.
 const LEAST_PERIODS: f64 = 3.0;
 
@@ -42,21 +46,14 @@ pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<(Trajec
         recording.warnings.iter().chain(&warnings).map(|doubt| format!("{}: {doubt}", path.display())).collect();
     let of_file = || path.display().to_string();
     let columns = columns(&recording, arm).with_context(of_file)?;
-    if let [first, second, ..] = &regular.segments[..] {
-        let end = regular.time(first.ticks.end - 1);
-        bail!(
-            "{}: its positions are not continuous from {end:.3} s to {:.3} s (a gap, a jump, or another run); give the rows on one side of that",
-            path.display(),
-            second.start
-        );
-    }
+    let positions = joined(&regular, &columns, GAP / cutoff).with_context(of_file)?;
     let (rate, most) = (1.0 / regular.period, LARGEST_CUTOFF / regular.period);
     ensure!(
         cutoff <= most,
         "{}: it has {rate:.1} rows a second, which allows a reference.cutoff of at most {most:.2} Hz, but it is {cutoff} Hz",
         path.display()
     );
-    let seconds = regular.period * regular.len() as f64;
+    let seconds = regular.period * positions[0].len() as f64;
     ensure!(
         cutoff * seconds >= LEAST_PERIODS,
         "{}: it has {seconds:.3} s, but a filter of {cutoff} Hz needs {:.3} s; give a longer recording, or a higher reference.cutoff",
@@ -64,19 +61,45 @@ pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<(Trajec
         LEAST_PERIODS / cutoff
     );
     let kernel = Kernel::new(cutoff, regular.period);
-    let filtered: Vec<[Vec<f64>; 3]> = columns
-        .iter()
-        .map(|&column| {
-            let q = &regular.q[column];
-            [kernel.smooth(q, 1), kernel.first(q, 1), kernel.second(q, 1)]
-        })
-        .collect();
+    let filter = |q: &Vec<f64>| [kernel.smooth(q, 1), kernel.first(q, 1), kernel.second(q, 1)];
+    let filtered: Vec<[Vec<f64>; 3]> = positions.iter().map(filter).collect();
     let point = |tick: usize| {
         let of = |order: usize| filtered.iter().map(|joint| joint[order][tick]).collect();
         Motion { q: of(0), qd: of(1), qdd: of(2) }
     };
     let points = (0..filtered[0][0].len()).map(point).collect();
     Ok((Trajectory::new(regular.period, points).with_context(of_file)?, doubts))
+}
+
+/// The positions of the joints in these columns (rad or m), without gaps: short ones, of at most `most` (s), are filled along a line.
+///
+/// # Errors
+/// If there is a longer gap, or a jump.
+fn joined(regular: &RegularRecording, columns: &[usize], most: f64) -> anyhow::Result<Vec<Vec<f64>>> {
+    let of_joint = |&column: &usize| {
+        let q = &regular.q[column];
+        let steps = regular.segments.iter().flat_map(|segment| q[segment.ticks.clone()].windows(2));
+        let largest = steps.map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        let mut positions: Vec<f64> = Vec::with_capacity(q.len());
+        for segment in &regular.segments {
+            let ticks = segment.ticks.clone();
+            if let Some(&before) = positions.last() {
+                let end = regular.time(ticks.start - 1);
+                let gap = segment.start - end;
+                let (count, step) = ((gap / regular.period).round().max(1.0), q[ticks.start] - before);
+                ensure!(
+                    gap <= most && step.abs() <= JUMP * count * largest,
+                    "its positions are not continuous from {end:.3} s to {:.3} s (a gap, a jump, or another run); give the rows on one \
+                     side of that",
+                    segment.start
+                );
+                positions.extend((1..count as usize).map(|k| before + step * k as f64 / count));
+            }
+            positions.extend_from_slice(&q[ticks]);
+        }
+        Ok(positions)
+    };
+    columns.iter().map(of_joint).collect()
 }
 
 #[cfg(test)]
@@ -138,6 +161,19 @@ mod tests {
         }
     }
 
+    /// As where a logger was busy for 44 ms, less than half a period of the cut-off.
+    #[test]
+    fn a_short_gap_is_filled() {
+        let scenario = loaded((0..500).chain(510..1100), "file = \"motion.csv\"").expect("it is a scenario");
+        let (mut motion, mut whole) = (torque::Motion::new(6), torque::Motion::new(6));
+        let without = loaded(0..1100, "file = \"motion.csv\"").expect("it is a scenario");
+        for time in [1.5, 1.9, 2.5, 4.0] {
+            scenario.reference.at(time, &mut motion);
+            without.reference.at(time, &mut whole);
+            assert!((motion.q[0] - whole.q[0]).abs() < 2e-3, "{time}: {} {}", motion.q[0], whole.q[0]);
+        }
+    }
+
     #[test]
     fn what_cannot_be_followed_is_refused_with_a_remedy() {
         let refused = |rows: Vec<usize>, table: &str| match loaded(rows.into_iter(), table) {
@@ -153,7 +189,7 @@ mod tests {
             (whole(), "file = \"motion.csv\"\ncutoff = -1.0", "give more than 0"),
             ((0..500).collect(), file, "give a duration of at most that"),
             ((0..20).collect(), file, "give a longer recording"),
-            ((0..500).chain(900..1500).collect(), file, "give the rows on one side"),
+            ((0..500).chain(900..1500).collect(), file, "not continuous from 1.996 s to 3.600 s"),
         ] {
             let error = refused(rows, table);
             assert!(error.contains(expected) && error.contains("follow.toml:"), "{table}: {error}");
