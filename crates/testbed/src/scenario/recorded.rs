@@ -26,6 +26,8 @@ pub fn columns(recording: &Recording, arm: &Arm) -> anyhow::Result<Vec<usize>> {
     arm.joints().iter().map(column).collect()
 }
 
+/// The distance between points of the reference, in periods of the cut-off.
+const POINT: f64 = 0.1;
 /// The longest gap that is filled, in periods of the cut-off.
 const GAP: f64 = 0.5;
 /// A step across a gap is a jump if it is larger than this multiple of the largest step elsewhere.
@@ -61,14 +63,16 @@ pub fn trajectory(path: &Path, arm: &Arm, cutoff: f64) -> anyhow::Result<(Trajec
         LEAST_PERIODS / cutoff
     );
     let kernel = Kernel::new(cutoff, regular.period);
-    let filter = |q: &Vec<f64>| [kernel.smooth(q, 1), kernel.first(q, 1), kernel.second(q, 1)];
+    // Closer points would make the acceleration between them sensitive to the rounding of the filter's derivatives.
+    let stride = (POINT / cutoff / regular.period).round().max(1.0) as usize;
+    let filter = |q: &Vec<f64>| [kernel.smooth(q, stride), kernel.first(q, stride), kernel.second(q, stride)];
     let filtered: Vec<[Vec<f64>; 3]> = positions.iter().map(filter).collect();
     let point = |tick: usize| {
         let of = |order: usize| filtered.iter().map(|joint| joint[order][tick]).collect();
         Motion { q: of(0), qd: of(1), qdd: of(2) }
     };
     let points = (0..filtered[0][0].len()).map(point).collect();
-    Ok((Trajectory::new(regular.period, points).with_context(of_file)?, doubts))
+    Ok((Trajectory::new(stride as f64 * regular.period, points).with_context(of_file)?, doubts))
 }
 
 /// The positions of the joints in these columns (rad or m), without gaps: short ones, of at most `most` (s), are filled along a line.
