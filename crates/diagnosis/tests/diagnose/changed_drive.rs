@@ -2,23 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::support::{ELBOW, Injected, Motion, SHOULDER, baseline_friction, recorded, regular, sentences, start, trio};
-use diagnosis::{Diagnosis, Finding, Input, Options, diagnose};
-use recording::RegularRecording;
-
-/// Four recordings with the effects `injected`, two of them from before. The last is held out.
-fn diagnosed(injected: Injected<'_>) -> Diagnosis {
-    let recordings: Vec<RegularRecording> =
-        (0..4).map(|variant| regular(&recorded(&trio(), variant, 16.0, injected))).collect();
-    let input = |(number, recording)| Input {
-        name: ["a", "b", "c", "d"][number],
-        recording,
-        held_out: number == 3,
-        before: number < 2,
-    };
-    let inputs: Vec<Input<'_>> = recordings.iter().enumerate().map(input).collect();
-    diagnose(&trio(), &inputs, &Options::default(), &|_| {}).expect("it can be diagnosed")
-}
+use crate::changes::{is_after, with};
+use crate::support::{ELBOW, Motion, SHOULDER, baseline_friction, sentences};
+use diagnosis::Finding;
 
 /// Torques that no effect of the catalogue explains: several sines, with other phases in each recording.
 fn unexplained(motion: &Motion, size: f64) -> f64 {
@@ -30,9 +16,9 @@ fn unexplained(motion: &Motion, size: f64) -> f64 {
 #[test]
 fn an_inertia_of_a_drive_that_changed_needs_the_joints_before_it() {
     for (size, is_named) in [(0.0, true), (3.0, false)] {
-        let diagnosis = diagnosed(&|motion, tau| {
+        let diagnosis = with(&|motion, tau| {
             baseline_friction(motion, tau);
-            if motion.clock >= start(2) {
+            if is_after(motion) {
                 tau[ELBOW] += 0.15 * motion.qdd[ELBOW];
             }
             tau[SHOULDER] += unexplained(motion, size);

@@ -20,13 +20,13 @@ fn diagnosed(recordings: &[RegularRecording]) -> Diagnosis {
 }
 
 /// The diagnosis of recordings with the effects `injected`.
-fn with(injected: Injected<'_>) -> Diagnosis {
+pub fn with(injected: Injected<'_>) -> Diagnosis {
     let recorded = |variant| regular(&crate::support::recorded(&trio(), variant, 16.0, injected));
     diagnosed(&(0..4).map(recorded).collect::<Vec<_>>())
 }
 
 /// Whether a motion is after the change.
-fn is_after(motion: &Motion) -> bool {
+pub fn is_after(motion: &Motion) -> bool {
     motion.clock >= start(2)
 }
 
