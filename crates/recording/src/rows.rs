@@ -354,9 +354,7 @@ impl<'a> Rows<'a> {
         let left_out = self.values.left_out();
         let (mut columns, breaks, span) = self.values.finish();
         let mut epoch = self.stamps.epoch();
-        if breaks.is_empty() {
-            self.warnings.extend(self.ends.leave_out(&mut columns, &mut epoch));
-        }
+        self.warnings.extend(self.ends.leave_out(self.in_run, &mut columns, &mut epoch));
         if let Some(reason) = too_long(columns[0][0], columns[0][columns[0].len() - 1]) {
             return Err(RecordingError::Header { path, has_lines: self.has_lines, reason });
         }

@@ -26,9 +26,8 @@ pub struct Ends {
     first: [Option<Stamped>; 2],
     /// The last two rows of the run, the last one first.
     last: [Option<Stamped>; 2],
-    /// The number of rows of this run, and whether it is the first one.
-    rows: usize,
-    is_first_run: bool,
+    /// Whether another run began.
+    has_more_runs: bool,
 }
 
 /// A row that is left out because its stamp is stray.
@@ -46,8 +45,7 @@ impl Ends {
     /// Adds a row, which may begin another run.
     pub fn add(&mut self, place: Location, stamp: f64, begins: bool) {
         let row = Some(Stamped { place, stamp });
-        self.is_first_run = self.rows == 0 || (self.is_first_run && !begins);
-        self.rows = if begins { 1 } else { self.rows + 1 };
+        self.has_more_runs |= begins && self.last[0].is_some();
         self.last = [row, self.last[0].filter(|_| !begins)];
         if let Some(free) = self.first.iter_mut().find(|first| first.is_none()) {
             *free = row;
@@ -55,8 +53,7 @@ impl Ends {
     }
 
     /// Why the row before, after which time goes back to `stamp`, has a stray stamp; `None` if a run begins with `stamp` instead: a run
-    /// begins earlier than the row before the last one.
-    /// Stamps count from the `epoch` (s).
+    /// begins earlier than the row before the last one. Stamps count from the `epoch` (s).
     pub fn jumped(&self, stamp: f64, epoch: Option<i64>) -> Option<(Location, String)> {
         let [Some(last), Some(before)] = self.last else { return None };
         let short = |stamp: f64| short(stamp + epoch.unwrap_or(0) as f64);
@@ -71,10 +68,10 @@ impl Ends {
         (stamp > before.stamp).then(|| (last.place, text()))
     }
 
-    /// Leaves the rows with stray stamps out of the `columns` of a single run, the time first, unless they are not among its rows, or are a
+    /// Leaves the rows with stray stamps out of the `columns` of a single run of so many `rows`, the time first, unless they are not among its rows, or are a
     /// part of a mean; the `epoch` (s), from which stamps count, becomes that of the first remaining row.
-    pub fn leave_out(&self, columns: &mut [Vec<f64>], epoch: &mut Option<i64>) -> Vec<Warning> {
-        let [first, last] = self.strays();
+    pub fn leave_out(&self, rows: usize, columns: &mut [Vec<f64>], epoch: &mut Option<i64>) -> Vec<Warning> {
+        let [first, last] = self.strays(rows);
         let is_row = |stray: &Stray, time: Option<&f64>| time == Some(&stray.stamp);
         let first = first.filter(|stray| is_row(stray, columns[0].first()));
         let last = last.filter(|stray| is_row(stray, columns[0].last()));
@@ -98,12 +95,12 @@ impl Ends {
         [first, last].into_iter().flatten().map(warning).collect()
     }
 
-    /// The stray stamps at the beginning and at the end of a file with a single run.
-    fn strays(&self) -> [Option<Stray>; 2] {
+    /// The stray stamps at the beginning and at the end of a file with a single run of so many rows.
+    fn strays(&self, rows: usize) -> [Option<Stray>; 2] {
         let ([Some(first), Some(second)], [Some(last), Some(before)]) = (self.first, self.last) else {
             return [None; 2];
         };
-        if !self.is_first_run || self.rows <= ROWS + 2 {
+        if self.has_more_runs || rows <= ROWS + 2 {
             return [None; 2];
         }
         let stray = |row: Stamped, next: Stamped, others: f64| {
@@ -143,15 +140,15 @@ mod tests {
 
     #[test]
     fn a_stamp_far_from_all_others_is_stray() {
-        let [first, last] = ends([0.0].into_iter().chain(steps(200).map(|t| t + 1.7e9)).chain([2e9])).strays();
+        let [first, last] = ends([0.0].into_iter().chain(steps(200).map(|t| t + 1.7e9)).chain([2e9])).strays(202);
         assert_eq!(first.map(|stray| (stray.place, stray.stamp)), Some((Location::Line(2), 0.0)));
         assert_eq!(last.map(|stray| (stray.place, stray.stamp)), Some((Location::Line(203), 2e9)));
     }
 
     #[test]
     fn a_gap_of_a_few_durations_is_a_gap() {
-        assert_eq!(ends(steps(200).chain([20.0])).strays(), [None; 2]);
-        assert_eq!(ends(steps(20).chain([1e4])).strays(), [None; 2], "too few rows");
+        assert_eq!(ends(steps(200).chain([20.0])).strays(201), [None; 2]);
+        assert_eq!(ends(steps(20).chain([1e4])).strays(21), [None; 2], "too few rows");
     }
 
     #[test]
