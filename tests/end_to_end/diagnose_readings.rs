@@ -189,3 +189,27 @@ fn recordings_are_diagnosed_as_they_were_read_if_the_user_says_so() {
     assert!(second["doubts"].is_null());
     assert_eq!(second["warnings"], first["doubts"]);
 }
+
+/// The masses and moments of inertia of a URDF in g and g m²: the recordings are not blamed.
+#[test]
+fn masses_in_grams_are_refused_before_the_recordings_are_judged() {
+    let case = case();
+    let in_grams = |text: &str, attribute: &str| {
+        let mut pieces = text.split(attribute).map(str::to_owned);
+        let first = pieces.next().expect("a beginning");
+        let rest = pieces.map(|piece| {
+            let (number, rest) = piece.split_once('"').expect("a number");
+            format!("{attribute}{}\"{rest}", 1e3 * number.parse::<f64>().expect("a number"))
+        });
+        first + &rest.collect::<String>()
+    };
+    let urdf = ["mass value=\"", "ixx=\"", "iyy=\"", "izz=\""]
+        .iter()
+        .fold(case.text("robot.urdf"), |text, attribute| in_grams(&text, attribute));
+    case.sandbox.write("robot.urdf", &urdf);
+    let said = case.sandbox.refuse(&DIAGNOSE);
+    says(&said, &["robot.urdf: its masses seem to be in g: the links weigh 14000 kg together", "--as-read"]);
+    assert!(!said.contains("a.csv"), "{said}");
+    says(&case.sandbox.noted(&["inspect", "a.csv", "--robot", "robot.urdf"]), &["masses seem to be in g"]);
+    says(&case.sandbox.noted(&[&DIAGNOSE[..], &["--as-read"]].concat()), &["taken as it is, although its masses"]);
+}

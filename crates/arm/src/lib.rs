@@ -41,6 +41,7 @@ mod real;
 mod regressor;
 mod scratch;
 mod small;
+mod units;
 mod urdf;
 mod variants;
 mod visual;

@@ -7,7 +7,7 @@ use crate::joint::{Joint, JointKind};
 use crate::model::Arm;
 
 /// The length of an arm below which its links are not compared with it (m).
-const LEAST_REACH: f64 = 0.05;
+pub(crate) const LEAST_REACH: f64 = 0.05;
 /// The radius of gyration, over the arm's length, beyond which three equal moments of inertia are a placeholder. Source: simulated arms
 /// with 1 kg m² on every link of 0.1 to 2.4 kg, where it is 0.39 and more.
 const LARGE: f64 = 0.25;
@@ -95,7 +95,7 @@ impl Arm {
     }
 
     /// The length of the arm with all its links' centres of mass and travels in one line (m).
-    fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         let length = |joint: &Joint| {
             let travel = joint.limits.upper - joint.limits.lower;
             let is_finite = joint.kind == JointKind::Prismatic && travel.is_finite();
@@ -113,6 +113,6 @@ impl Arm {
 }
 
 /// The largest radius of gyration of a body about its centre of mass (m); `None` without mass.
-fn gyration(body: &Inertia) -> Option<f64> {
+pub(crate) fn gyration(body: &Inertia) -> Option<f64> {
     (body.mass > 0.0).then(|| (body.tensor.symmetric_eigenvalues().max().max(0.0) / body.mass).sqrt())
 }

@@ -105,6 +105,7 @@ impl Request {
         for remark in remarks.into_iter().flatten() {
             listener.note(&format!("{}: {remark}", robot.path.display()));
         }
+        self.check_units(&robot, &checked, listener)?;
         let mut only = self.only.as_deref().map(|only| wanted(only, &arm)).transpose()?;
         let has_before = !self.recordings.before.is_empty();
         if has_before {
@@ -194,6 +195,18 @@ impl Request {
             listener.note(&format!("{}: {warning}", robot.path.display()));
         }
         Ok(arm)
+    }
+
+    /// Refuses a URDF whose own numbers say that they are in other units, unless the user says that it is right: with such a model, everything
+    /// that would be said of the recordings is wrong.
+    fn check_units(&self, robot: &RobotFile, arm: &Arm, listener: &dyn Listener) -> anyhow::Result<()> {
+        let is_right = self.as_read || self.urdf_accuracy == Some(0.0);
+        let path = robot.path.display();
+        for doubt in arm.doubtful_units() {
+            ensure!(is_right, "{path}: {doubt}; correct the URDF, or give --as-read if it is right");
+            listener.note(&format!("{path}: taken as it is, although {doubt}"));
+        }
+        Ok(())
     }
 
     fn known(&self, arm: &Arm) -> anyhow::Result<Vec<Effect>> {

@@ -93,14 +93,17 @@ pub fn run(args: &InspectArgs) -> anyhow::Result<()> {
 fn load_arm(args: &InspectArgs, robot: &RobotFile, map: Option<&ColumnMap>) -> anyhow::Result<Arm> {
     let mut readable = args.files.iter().filter_map(|file| Recording::read_with(file, map).ok());
     let first = readable.next().unwrap_or_default();
-    let arm = robot.arm(&args.chain.options(named::named_joints(&first))).context("--robot")?;
+    let mut arm = robot.arm(&args.chain.options(named::named_joints(&first))).context("--robot")?;
     for warning in arm.warnings() {
         output::say(format_args!("note: {}: {warning}", robot.path.display()));
     }
-    let Some(Replaced { arm, remark, .. }) = replaced(&arm, &[]) else {
-        return Ok(arm);
-    };
-    output::say(format_args!("note: {}: {remark}", robot.path.display()));
+    if let Some(Replaced { arm: other, remark, .. }) = replaced(&arm, &[]) {
+        output::say(format_args!("note: {}: {remark}", robot.path.display()));
+        arm = other;
+    }
+    for doubt in arm.doubtful_units() {
+        output::say(format_args!("warning: {}: {doubt}", robot.path.display()));
+    }
     Ok(arm)
 }
 

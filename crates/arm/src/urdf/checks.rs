@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Refuses an arm without any inertia, and warns of each moving link without mass where others have some, and of links that are larger
-    /// than the arm. Forward dynamics needs [`Arm::massless_joint`] to be `None`.
+    /// than the arm or much smaller. Forward dynamics needs [`Arm::massless_joint`] to be `None`.
     pub(super) fn check_masses(&self, arm: &mut Arm) -> Result<(), ArmError> {
         if arm.joints.iter().all(|joint| joint.inertia == Inertia::zero()) {
             return Err(self.robot_error(
@@ -129,6 +129,7 @@ impl<'a> Reader<'a> {
         let massless = arm.joints.iter().filter(|joint| joint.inertia.mass == 0.0);
         let mut notes: Vec<String> = massless.map(|joint| self.massless(joint)).collect();
         notes.extend(arm.joints.iter().filter_map(|joint| self.larger_than_the_arm(arm, joint)));
+        notes.extend(arm.small_bodies());
         arm.warnings.extend(notes);
         Ok(())
     }

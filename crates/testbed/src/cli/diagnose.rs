@@ -80,7 +80,7 @@ pub struct DiagnoseArgs {
     #[arg(long)]
     pub torques_only: bool,
 
-    /// Diagnose the recordings as they were read, even if their units, signs, order or zeros seem wrong
+    /// Diagnose the recordings as they were read, even if their units, signs, order or zeros seem wrong, or the units of the URDF
     #[arg(long)]
     pub as_read: bool,
 
