@@ -11,6 +11,7 @@ use effects::{Detectability, Effect};
 use rayon::prelude::*;
 use torque::Reference;
 
+use crate::data::measure;
 use crate::findings::conclusion::Conclusion;
 use crate::findings::observability;
 use crate::report::{Confusable, Finding, NextExperiment, NotObservable, NotSeparated, Separation, Shows, Unexplained};
@@ -56,6 +57,8 @@ struct Hidden<'a> {
     joint: usize,
     /// Its column, and its candidate; `None` for a torque limit.
     column: Option<(usize, usize)>,
+    /// The largest torque of the joint in the training recordings (N m or N).
+    largest: f64,
 }
 
 /// A tried motion.
@@ -178,7 +181,8 @@ fn shows(prospect: &Prospect<'_>, outlook: &Outlook, hidden: &[Hidden<'_>]) -> V
     let wanted: Vec<(usize, usize)> = hidden.iter().filter_map(|h| Some((h.joint, h.column?.0))).collect();
     let mut seen = prospect.visibility(outlook, &wanted).into_iter();
     let size = |hidden: &Hidden<'_>| match hidden.column {
-        None => Some(outlook.largest[hidden.joint]),
+        // A limit shows where it removes as large a part of the torque.
+        None => Some(hidden.before? * outlook.largest[hidden.joint] / hidden.largest),
         Some((column, candidate)) => {
             let candidate = &prospect.last.study.candidates[candidate];
             let least = observability::least(prospect.last, candidate, column, &seen.next()?);
@@ -253,16 +257,18 @@ fn confusions(
     (list, unpredicted)
 }
 
-/// The `hidden` effects whose size can be predicted without simulation: torque limits, and linear effects.
+/// The `hidden` effects whose size can be predicted without simulation: torque limits of which some would be seen now, and linear effects.
 fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> {
     let (study, selected) = (&last.study, &last.judged.named);
+    let largest = measure::largest(&study.data.motions);
     let of = |entry: &'a NotObservable| {
         let name = entry.joint.as_deref()?;
         let joint = study.data.arm.joints().iter().position(|joint| joint.name == name)?;
         let spec = effects::spec(entry.effect)?;
+        let largest = largest[joint];
         if matches!(spec.detectability, Detectability::Limit { .. }) {
             let (parameter, before) = entry.would_be_seen_below.iter().next()?;
-            return Some(Hidden { entry, parameter, before: Some(*before), joint, column: None });
+            return Some(Hidden { entry, parameter, before: Some(*before), joint, column: None, largest });
         }
         if !matches!(spec.detectability, Detectability::Linear { .. }) {
             return None;
@@ -279,6 +285,7 @@ fn visible<'a>(last: &FinalFit, hidden: &'a [NotObservable]) -> Vec<Hidden<'a>> 
             before: entry.would_be_seen_above.values().next().copied(),
             joint,
             column: Some((*column, candidate)),
+            largest,
         })
     };
     hidden.iter().filter_map(of).collect()

@@ -72,10 +72,12 @@ pub enum Against {
 pub enum Detectability {
     /// No detectable size is determined.
     Never,
-    /// A torque limit, which is detectable below the largest torque.
+    /// A torque limit: from the limits at which it was tried.
     Limit {
         /// Why it is not testable.
         because: &'static str,
+        /// Why it was not found if no tried limit is detectable.
+        if_none: &'static str,
     },
     /// From the sizes at which it was tried.
     Sized {

@@ -11,8 +11,6 @@ use crate::data::statistics::median;
 use crate::data::used::{Section, Used};
 use crate::thresholds::{LARGEST_CUTOFF, MOST_GROUPS, MOST_ROWS, ROWS_PER_PERIOD, SHAKES_FOR, STILL};
 
-/// The ratio of the first filter's cut-off to the second's; nonlinear functions are evaluated between the two.
-const WIDER: f64 = 3.0;
 /// Samples of the fine grid per period of the second cut-off.
 const FINE: f64 = 8.0;
 /// The golden ratio; the fractional parts of its multiples are spread evenly.
@@ -149,7 +147,7 @@ fn groups<Role: PartialEq>(roles: &[Role]) -> Vec<usize> {
 impl Motions {
     /// Filters `inputs` with the second filter at `wanted` (Hz), or at the highest frequency that the slowest recording allows.
     /// `white` is the noise of each.
-    pub fn at(inputs: &[Input<'_>], white: &[WhiteNoise], wanted: f64) -> Self {
+    pub fn at(inputs: &[Input<'_>], white: &[WhiteNoise], wanted: f64, wider: f64) -> Self {
         let slowest = inputs.iter().map(|input| 1.0 / input.recording.period).fold(f64::INFINITY, f64::min);
         let cutoff = wanted.min(LARGEST_CUTOFF * slowest);
         let used = Used::of(inputs);
@@ -185,7 +183,7 @@ impl Motions {
             // Pauses and omitted parts between windows also count as time.
             end += recording.time(recording.len() - 1) - recording.time(0) + recording.period + PAUSE;
             motions.begins = motions.begins.min(shift + recording.time(0));
-            motions.add(index, (input, &white[index]), &used.sections(index, input), thin, shift);
+            motions.add(index, (input, &white[index]), &used.sections(index, input), [wider, thin], shift);
             motions.sources[index].part = used.part(index, input);
         }
         motions.tempo = motions.tempo();
@@ -230,12 +228,12 @@ impl Motions {
         index: usize,
         (input, white): (&Input<'_>, &WhiteNoise),
         sections: &[Section],
-        thin: f64,
+        [wider, thin]: [f64; 2],
         shift: f64,
     ) {
         let recording = input.recording;
         let rate = 1.0 / recording.period;
-        let first = Kernel::new((WIDER * self.cutoff).min(LARGEST_CUTOFF * rate), recording.period);
+        let first = Kernel::new((wider * self.cutoff).min(LARGEST_CUTOFF * rate), recording.period);
         let decimation = (rate / (FINE * self.cutoff)).floor().max(1.0) as usize;
         let period = recording.period * decimation as f64;
         let kernel = Kernel::new(self.cutoff, period);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use effects::Acts;
 use effects::arm::{INERTIAL_PARAMETERS, INERTIAL_SCALE};
 use effects::laws::ACCELERATION;
+use effects::sensor::TORQUE_SCALE;
 
 use crate::data::Data;
 use crate::findings::other_friction::{possible_beside, widen};
@@ -80,13 +81,13 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, comparison: 
         }
         let share = if k == 0 { member.share() } else { rotor_share(last, candidate) };
         // A mass that may be zero is that of no body: only moments are determined, which a link may have, too. A change that may be zero is
-        // no clear change, and a gap or a delay that may be zero is none.
+        // no clear change, a gap or a delay that may be zero is none, and a torque constant that may be right is not wrong.
         let spec = named.effect.spec();
-        let is_of_size = last_link.is_some() || change.is_some() || spec.is_simulated;
+        let needs_size = last_link.is_some() || change.is_some() || spec.is_simulated || named.effect.is(&TORQUE_SCALE);
         let is_body = study.is_payload(member.candidate) && change.is_none();
         let is_open = of_others
             || of_all
-            || is_of_size && may_be_nothing(spec, &named.parameters)
+            || needs_size && may_be_nothing(spec, &named.parameters)
             || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain);
         list.push(Finding {
             other: named.other,

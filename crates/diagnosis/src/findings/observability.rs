@@ -6,7 +6,6 @@ use effects::arm::PAYLOAD;
 use effects::{Detectability, Effect, Kind};
 use rayon::prelude::*;
 
-use crate::data::Data;
 use crate::regression::fit::Products;
 use crate::report::NotObservable;
 use crate::search::candidate::Candidate;
@@ -192,8 +191,8 @@ fn on_joint(last: &FinalFit, joint: usize) -> Vec<NotObservable> {
         match kind.spec().detectability {
             Detectability::Sized { .. } if is_excluded => add(EXPLAINED, None, None),
             Detectability::Never | Detectability::OfArm { .. } => {}
-            Detectability::Limit { because } => add(because, None, Some(largest_torque(&study.data, joint))),
-            Detectability::Sized { because, if_none, is_seen_below } => {
+            of_sizes @ (Detectability::Limit { because, if_none } | Detectability::Sized { because, if_none, .. }) => {
+                let is_seen_below = !matches!(of_sizes, Detectability::Sized { is_seen_below: false, .. });
                 let may_be_named = |size: f64| {
                     let effect = Effect::of(kind.spec()).with(key, size);
                     (kind.spec().is_certain)(&effect, &|_| None, 0.0)
@@ -254,13 +253,6 @@ fn in_turn() -> impl Iterator<Item = Kind> {
     let mut kinds: Vec<Kind> = Kind::all().filter(|kind| kind.name().is_some()).collect();
     kinds.sort_by_key(|kind| kind.spec().not_testable_turn);
     kinds.into_iter()
-}
-
-/// The largest torque of a joint in the training recordings (N m or N).
-fn largest_torque(data: &Data, joint: usize) -> f64 {
-    let chunks = data.motions.chunks.iter();
-    let fitted = chunks.filter(|chunk| data.fitted[chunk.recording]);
-    fitted.flat_map(|chunk| &chunk.tau[joint]).fold(0.0_f64, |largest, tau| largest.max(tau.abs()))
 }
 
 fn of(candidates: &[Candidate], kind: Kind, joint: usize) -> impl Iterator<Item = &Candidate> {

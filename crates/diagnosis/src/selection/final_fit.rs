@@ -241,16 +241,13 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         if (is_small || hypothesis.spec().is_wrong_mass || hypothesis.is(&TORQUE_SCALE)) && margin() < UNDECIDED_NATS {
             return Some(("another effect explains nearly as much in its place", false));
         }
-        let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, member.candidate);
+        let evidence = |study: &mut Study| study.evidence_beside_best_background(&judged.named, &[member.candidate]);
         let is_doubtful =
             study.is_payload(member.candidate) && payload::is_doubtful(study, &judged.named, member.candidate);
         if is_doubtful && evidence(study) < LEAST_BESIDE_SOME_LINKS {
             return Some(("links that are wrong explain nearly as much in its place", true));
         }
-        // If most links agree with the URDF, one wrong link is an unlikely explanation. A URDF with placeholders is wrong.
-        let preferred = study.preferred.as_ref().map_or(0.0, PriorStrengths::common);
-        let is_wrong = study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders();
-        let least = hypothesis.spec().least_beside_inertials.filter(|_| is_wrong)?;
+        let least = hypothesis.spec().least_beside_inertials.filter(|_| links_are_wrong(study))?;
         // Links that are wrong are as wrong before a change.
         let least = if study.changes(member.candidate) { least.min(MOST_FOR_A_CHANGE) } else { least };
         let size = judged.named.fit.coefficient(study.candidates[member.candidate].columns[0]).abs();
@@ -258,10 +255,40 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         let is_weak = is_too_far || evidence(study) < least;
         is_weak.then_some(("wrong inertials explain nearly as much in its place", true))
     };
-    members.into_iter().find_map(|member| {
+    let undecided = members.iter().find_map(|member| {
         let (rule, is_inertial) = rule(member)?;
         Some((member.candidate, rule, is_inertial))
-    })
+    });
+    undecided.or_else(|| opposed(study, judged, &members))
+}
+
+/// Whether all links differ from the URDF. If most agree with it, one wrong link is an unlikely explanation. A URDF with placeholders is
+/// wrong.
+fn links_are_wrong(study: &Study) -> bool {
+    let preferred = study.preferred.as_ref().map_or(0.0, PriorStrengths::common);
+    study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders()
+}
+
+/// The weaker one of two effects that wrong inertial parameters resemble and that together have less evidence, against the background that
+/// fits best without them, than the one that needs more. Where they oppose each other, each seems necessary beside the other.
+fn opposed(study: &mut Study, judged: &Judged, members: &[&judge::Member]) -> Option<(usize, &'static str, bool)> {
+    if !links_are_wrong(study) {
+        return None;
+    }
+    let resembles = |member: &&&judge::Member| {
+        let candidate = &study.candidates[member.candidate];
+        candidate.hypothesis.spec().may_be_inertial && candidate.joint.is_some() && study.always_acts(member.candidate)
+    };
+    let group: Vec<usize> = members.iter().filter(resembles).map(|member| member.candidate).collect();
+    let mut pairs = group.iter().enumerate().flat_map(|(k, &a)| group[k + 1..].iter().map(move |&b| [a, b]));
+    let least = |study: &Study, pair: &[usize; 2]| {
+        let of = |&member: &usize| study.candidates[member].hypothesis.spec().least_beside_inertials;
+        pair.iter().filter_map(of).reduce(f64::max)
+    };
+    let [weaker, _] = pairs.find(|pair| {
+        least(study, pair).is_some_and(|least| study.evidence_beside_best_background(&judged.named, pair) < least)
+    })?;
+    Some((weaker, "wrong inertials explain nearly as much in the place of it and another effect", true))
 }
 
 /// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's. For errors

@@ -57,7 +57,7 @@ pub fn beside_few_links(study: &mut Study, selected: &Selection) -> Option<(usiz
     let are_few = study.data.arm.dof() <= FEW_JOINTS && study.stated.links != Some(0.0);
     let is_constant = |&c: &usize| study.is_payload(c) && study.always_acts(c);
     let payload = selected.set.iter().copied().filter(|_| are_few).find(is_constant)?;
-    let evidence = study.evidence_beside_best_background(selected, payload);
+    let evidence = study.evidence_beside_best_background(selected, &[payload]);
     Some((payload, evidence - BESIDE_FEW_LINKS))
 }
 

@@ -148,7 +148,7 @@ fn nothing(study: &mut Study, judged: &Judged, resampled: &Resampled) -> Vec<usi
         study.is_payload(member) && is_of_no_mass(study, resampled, member)
             || may_be(study, member)
                 && (is_new_body(study, member)
-                    || study.evidence_beside_best_background(&judged.named, member) < CLEAR_THOUGH_UNDETERMINED)
+                    || study.evidence_beside_best_background(&judged.named, &[member]) < CLEAR_THOUGH_UNDETERMINED)
     });
     list
 }

@@ -189,8 +189,8 @@ pub const WRIST: usize = 3;
 /// (nats). Source: two arms simulated with another engine, whose URDFs are exact: torque constants that deviate by 1 to 3 % were called a
 /// wrong link (−1.5 nats); two links that are wrong have 141 and 350.
 pub const LINK_OVER_CONSTANTS: f64 = 2.0;
-/// The part of the simulated torque of a spring, a gap or a delay that must suffice for its name, where the diagnosis says from which
-/// size on it would be seen. Source: fifteen springs and gaps of up to 4.5 % of the torque, simulated with another engine, that were not
+/// The part of the simulated torque of a spring, a gap or a delay, or of the torque that a limit removes, that must suffice for its name,
+/// where the diagnosis says from which size on it would be seen. Source: fifteen springs and gaps of up to 4.5 % of the torque, simulated with another engine, that were not
 /// named although they were up to 6.3 times as large as the stated size; of two more, one has 36 times it (an encoder offset explains
 /// it) and one 10.5 times.
 pub const SURELY_SEEN: f64 = 1.0 / 6.0;

@@ -1,6 +1,6 @@
 //! Effects that a part of the recordings hides: their own joint, the size of the held-out torques, noise.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use crate::support::{ELBOW, Motion, SHOULDER, TURN, baseline_friction, diagnosed, named, sentences, start, trio};
 use arm::{Inertia, Matrix3, Vector3, Workspace};
@@ -110,4 +110,28 @@ fn the_level_of_friction_beside_viscous_friction_that_noise_hides() {
     assert!(seen, "{:?}", sentences(&diagnosis));
     let is_viscous = |finding: &diagnosis::Finding| finding.effect == "viscous_friction";
     assert!(!diagnosis.report.findings.iter().any(is_viscous), "{:?}", sentences(&diagnosis));
+}
+
+/// The largest torque of a recording lasts for a few samples, so that a limit just below it would not show.
+#[test]
+fn a_limit_that_would_be_seen_removes_enough_torque_to_show() {
+    let torques = RefCell::new(Vec::new());
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        baseline_friction(motion, tau);
+        torques.borrow_mut().push(tau.to_vec());
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let limits = diagnosis.report.not_observable.iter().filter(|entry| entry.effect == "torque_saturation");
+    let mut seen = 0;
+    for entry in limits {
+        let joint =
+            trio().joints().iter().position(|joint| Some(&joint.name) == entry.joint.as_ref()).expect("a joint");
+        let Some(&limit) = entry.would_be_seen_below.get("limit") else { continue };
+        let torques = torques.borrow();
+        let sum_of_squares = |of: &dyn Fn(f64) -> f64| torques.iter().map(|tau| of(tau[joint]).powi(2)).sum::<f64>();
+        let removed = sum_of_squares(&|tau| tau - tau.clamp(-limit, limit)) / sum_of_squares(&|tau| tau);
+        assert!(removed.sqrt() > 0.005, "{:?}: {limit}, {removed}", entry.joint);
+        seen += 1;
+    }
+    assert!(seen > 0, "{:?}", diagnosis.report.not_observable);
 }

@@ -20,7 +20,10 @@ pub static TORQUE_SATURATION: Spec = Spec {
     // Neither of two in the cases of `torque_scale` was right; they were up to 0.9 times as large.
     least_beside_residual: Some(1.5),
     is_simulated: true,
-    detectability: Detectability::Limit { because: "no torque limit was reached" },
+    detectability: Detectability::Limit {
+        because: "no torque limit shows",
+        if_none: "no limit that this motion allows would remove enough torque to show",
+    },
     not_testable_turn: 2,
     forms: |grounds| {
         let mut forms = Vec::new();

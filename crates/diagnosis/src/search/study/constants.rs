@@ -1,4 +1,5 @@
-//! Torque constants of all joints that changed together, in the place of changes of masses and friction that imitate them.
+//! Torque constants: those of the background that are possible, and those of all joints that changed together, in the place of changes of
+//! masses and friction that imitate them.
 
 use effects::Spec;
 use effects::arm::{INERTIAL_SCALE, LINK_INERTIAL_ERROR};
@@ -6,13 +7,39 @@ use effects::sensor::TORQUE_SCALE;
 
 use super::Study;
 use crate::regression::fit::Fit;
+use crate::regression::strengths::PriorStrengths;
 use crate::search::problem::Selection;
-use crate::thresholds::FACTOR_OF_MASSES;
+use crate::thresholds::{FACTOR_OF_MASSES, MOST_CONSTANT, MOST_DEVIATIONS};
 
 /// Factors on masses: torque constants of several joints resemble them.
 const OF_MASSES: [&Spec; 2] = [&INERTIAL_SCALE, &LINK_INERTIAL_ERROR];
 
 impl Study {
+    /// The fit of `selected` beside a background of these strengths, from which those torque constants are left out, the farthest one
+    /// first, that would be wrong by more than any is.
+    pub(super) fn with_possible_constants(
+        &self,
+        mut strengths: PriorStrengths,
+        mut selected: Selection,
+    ) -> (PriorStrengths, Selection) {
+        let most = MOST_CONSTANT.max(MOST_DEVIATIONS * self.stated.torque_accuracy());
+        loop {
+            let products = self.products_at(&strengths);
+            selected = self.problem(&products).reweighted(selected);
+            let deviation = |joint: usize| {
+                let column = self.torque_constant(joint)?;
+                Some((selected.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
+            };
+            let farthest = (0..self.data.motions.dof).filter_map(deviation).max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, joint)) = farthest else {
+                return (strengths, selected);
+            };
+            strengths.impossible_constants.push(joint);
+            let products = self.products_at(&strengths);
+            selected = self.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
+        }
+    }
+
     /// `selected` with a changed torque constant on each joint in the place of masses and friction that changed since the recordings
     /// from before, if a mass changed and if the constants explain more.
     ///

@@ -1,7 +1,9 @@
 //! Selects the strengths of the background together with the effects, by the gain of the score.
 
+use arm::JointKind;
 use effects::Scales;
 use effects::background::LAG;
+use effects::drive::ROTOR_INERTIA;
 use rayon::prelude::*;
 
 use super::Study;
@@ -9,11 +11,11 @@ use crate::data::motion::{Chunk, Motions};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
 use crate::regression::strengths::{Part, PriorStrengths};
+use crate::search::candidate::Candidate;
 use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
     AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, HOPELESS_EXCHANGE, LINK_STRENGTHS, LONGEST_SHORT_LAG,
-    MOST_CONSTANT, MOST_DEVIATIONS, MOST_LATER_GAIN, MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS,
-    PER_IMITATION,
+    MOST_LATER_GAIN, MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS, PER_IMITATION, SLIDING_STRENGTH,
 };
 
 /// The largest number of effects that may together replace a part of the background.
@@ -118,13 +120,20 @@ impl Study {
     }
 
     /// The strongest background in which all links differ from the URDF and which is nearly as likely as that of `selected` by its score,
-    /// and `selected` fitted again beside it; for a payload on an arm of few joints, the most likely one. `None` if there is none, if all of the links differ already, if none do
-    /// and no payload is selected, whose mass depends on them, or if the user states the strengths.
+    /// and `selected` fitted again beside it; for a payload on an arm of few joints, the most likely one, and for the inertia of a drive on
+    /// a prismatic joint, which is a mass of the link as well, one of the usual strength. `None` if there is none, if all of the links
+    /// differ already, if none do and no such effect is selected, or if the user states the strengths.
     pub fn with_all_links(&self, selected: &Selection) -> Option<(PriorStrengths, Selection)> {
         let links = &self.strengths.links;
         let has_payload = selected.set.iter().any(|&c| self.is_payload(c));
+        let is_mass = |&c: &usize| {
+            let Candidate { hypothesis, joint, .. } = &self.candidates[c];
+            let is_sliding = joint.is_some_and(|joint| self.data.arm.joints()[joint].kind == JointKind::Prismatic);
+            is_sliding && hypothesis.is(&ROTOR_INERTIA)
+        };
+        let has_mass = !has_payload && selected.set.iter().any(is_mass);
         let are_few = has_payload && links.len() <= FEW_JOINTS;
-        let margin = if are_few {
+        let margin = if are_few || has_mass {
             BESIDE_FEW_LINKS
         } else if links.iter().any(|&rho| rho > 0.0) {
             NEARLY_AS_LIKELY
@@ -141,7 +150,8 @@ impl Study {
             let (_, next) = self.beside(selected, &strengths);
             (strengths, next)
         };
-        let strongest_first = LINK_STRENGTHS.into_iter().rev().filter(|&rho| rho > 0.0);
+        let strengths = if has_mass { &[SLIDING_STRENGTH][..] } else { &LINK_STRENGTHS };
+        let strongest_first = strengths.iter().rev().copied().filter(|&rho| rho > 0.0);
         let mut nearly = strongest_first.map(at_least).filter(|(_, next)| next.score < selected.score + margin);
         if are_few {
             // So wide a margin holds links that nobody would expect.
@@ -276,13 +286,14 @@ impl Study {
         selected
     }
 
-    /// The evidence for `member` of `selected` (nats): the difference of the scores without and with it, each with its own
+    /// The evidence for `members` of `selected` together (nats): the difference of the scores without and with them, each with its own
     /// best background. An effect that resembles wrong inertials allows a smaller background, which must not count as
     /// evidence for the effect.
-    pub fn evidence_beside_best_background(&mut self, selected: &Selection, member: usize) -> f64 {
+    pub fn evidence_beside_best_background(&mut self, selected: &Selection, members: &[usize]) -> f64 {
         let kept = self.strengths.clone();
         let products = self.training_products();
-        let without = self.problem(&products).without(selected, member);
+        let problem = self.problem(&products);
+        let without = members.iter().fold(selected.clone(), |rest, &member| problem.without(&rest, member));
         // The present background may be smaller than the evidence prefers, because of the held-out recordings.
         let mut best = |mut fit: Selection| {
             for _ in 0..MOST_MOVES {
@@ -367,30 +378,5 @@ impl Study {
         let (strengths, next) = self.with_possible_constants(strengths, next);
         let pays = strengths.impossible_constants.len() == before || next.score < selected.score - 1e-6;
         pays.then_some((strengths, next))
-    }
-
-    /// The fit of `selected` beside a background of these strengths, from which those torque constants are left out, the farthest one
-    /// first, that would be wrong by more than any is.
-    fn with_possible_constants(
-        &self,
-        mut strengths: PriorStrengths,
-        mut selected: Selection,
-    ) -> (PriorStrengths, Selection) {
-        let most = MOST_CONSTANT.max(MOST_DEVIATIONS * self.stated.torque_accuracy());
-        loop {
-            let products = self.products_at(&strengths);
-            selected = self.problem(&products).reweighted(selected);
-            let deviation = |joint: usize| {
-                let column = self.torque_constant(joint)?;
-                Some((selected.fit.coefficient(column).abs(), joint)).filter(|(deviation, _)| *deviation > most)
-            };
-            let farthest = (0..self.data.motions.dof).filter_map(deviation).max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((_, joint)) = farthest else {
-                return (strengths, selected);
-            };
-            strengths.impossible_constants.push(joint);
-            let products = self.products_at(&strengths);
-            selected = self.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
-        }
     }
 }
