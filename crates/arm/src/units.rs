@@ -9,17 +9,17 @@ const LONGEST: f64 = 100.0;
 /// The distance of a centre of mass from its joint that is in millimetres, over the arm's length without centres of mass, and in metres:
 /// both must be exceeded. Source: a crane's boom, which is one link of 10 m.
 const FAR_COM: (f64, f64) = (10.0, 10.0);
-/// The mass of an arm over the cube of its length with all links in one line, beyond which the masses are in grams (kg/m³). Source: arms
-/// of 0.4 to 4 m have 1 to 60.
+/// The mass of an arm over the cube of its length with all links in one line, beyond which the masses are in grams (kg/m³). Source: the
+/// robots of example-robot-data and of ten published recordings have at most 28.
 const DENSEST: f64 = 1000.0;
 /// The number of joints, all revolute, from which an arm is slender enough to be judged by its mass, and its least length (m). Source: a
 /// carriage may be as heavy as it is short, and so may a turntable.
 const SLENDER: (usize, f64) = (3, 0.2);
-/// The radius of gyration over the arm's length, beyond which moments of inertia are in another unit if most links have such. Source:
-/// placeholders of 1 kg m² on the small links of an arm have up to 2.
+/// The radius of gyration over the arm's length, beyond which moments of inertia are in another unit if most links have such. Source: a
+/// placeholder of 1 kg m² on a link of 0.15 kg has 2.6 m, and kg mm² give a thousand times the true radius.
 const LARGE_BODY: f64 = 3.0;
 /// The largest radius of gyration over the arm's length, below which moments of inertia are in another unit, or those of points.
-/// Source: arms of example-robot-data have 0.05 and more.
+/// Source: the robots of example-robot-data, with all their limbs in one line, have 0.011 and more.
 const SMALL_BODY: f64 = 0.005;
 
 impl Arm {
@@ -70,7 +70,7 @@ impl Arm {
         let large = radii.iter().filter(|&&radius| radius > LARGE_BODY * reach).count();
         (large > 1 && 2 * large > radii.len()).then(|| {
             format!(
-                "the moments of inertia seem to be in kg mm² or g m²: those of the links are those of bodies with radii of gyration of up to \
+                "its moments of inertia seem to be in kg mm² or g m²: the links would be bodies with radii of gyration of up to \
                  {largest:.0} m, and the arm with all its links in one line is {reach:.2} m long. A URDF has kg m²"
             )
         })

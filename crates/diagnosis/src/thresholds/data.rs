@@ -15,7 +15,7 @@ pub const WIDER: f64 = 3.0;
 /// The least such ratio, for positions so coarse that the noise of the velocity would hide slow motion. Source: both filters are then alike.
 pub const LEAST_WIDER: f64 = 1.0;
 /// The largest velocity deadband, as a share of the joint's largest speed, with which the first filter stays as wide as it is.
-/// Source: seven simulated recordings of an SO-101 with 4096 steps a turn; with 0.1, six of its 13 injected effects are found, and with 0.05
+/// Source: seven simulated recordings of an SO-101 with 4096 steps a turn; with 0.1, five of its 13 injected effects are found, and with 0.05
 /// eight.
 pub const MOST_DEADBAND: f64 = 0.05;
 /// A joint whose largest speed is below this multiple of its noise may be at rest. Source: that quantile of white noise is 2.6.
