@@ -134,3 +134,25 @@ fn a_wrong_link_before_the_wrist_is_no_payload() {
     assert!(names.contains(&"inertial_parameters"), "{names:?}");
     assert!(!names.contains(&"payload"), "{names:?}");
 }
+
+/// A constant torque on an arm whose URDF is wrong by 20 %: the search exchanges a payload for links that explain hardly more, and the final
+/// fit drops these.
+#[test]
+fn an_effect_that_was_exchanged_is_tried_again_once() {
+    let sandbox = Sandbox::new();
+    sandbox.write("trio.urdf", crate::diagnose_made::URDF);
+    let offset =
+        "schema = \"testbed.model/1\"\n[[effects]]\neffect = \"torque_offset\"\njoint = \"turn\"\noffset = 0.25\n";
+    sandbox.write("offset.toml", offset);
+    let made = "conceal --robot trio.urdf --effects offset.toml --seed 109 --friction --urdf-error 0.2 --out cases";
+    sandbox.succeed(&words(made));
+    let case = |name: &str| format!("cases/case_000/{name}");
+    let [robot, one, two, three, held_out] =
+        ["robot.urdf", "train_1.csv", "train_2.csv", "train_3.csv", "held_out.csv"].map(case);
+    let train = ["--train", &one, &two, &three, "--held-out", &held_out];
+    sandbox
+        .succeed(&[&["diagnose", "--robot", &robot][..], &train, &["--torques-only", "--trace", "trace.csv"]].concat());
+    let trace = std::fs::read_to_string(sandbox.path("trace.csv")).expect("it was written");
+    let taken = trace.lines().filter(|line| line.contains("the effect that had taken its place is dropped")).count();
+    assert_eq!(taken, 1, "{trace}");
+}

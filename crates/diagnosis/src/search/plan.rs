@@ -64,6 +64,7 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
         let products = study.training_products();
         let swapped = study.problem(&products).swap(selected.clone(), &allowed, MOST_SWAPS);
         study.note("explains more in its place", &selected, &swapped);
+        study.record_exchange(&selected, &swapped);
         selected = swapped;
         if selected.set != before {
             selected = refine(study, selected, false);

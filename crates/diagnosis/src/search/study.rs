@@ -40,6 +40,9 @@ use formed::Formed;
 pub use linearisation_point::LinearisationPoint;
 pub use strengths::moved;
 
+/// What a candidate claims: a hypothesis on a joint, and whether it always acts.
+pub type Claim = (Hypothesis, Option<usize>, bool);
+
 /// The data, and the columns and candidates that may explain them.
 pub struct Study {
     /// The recordings; [`Data::rigid`] is that of the arm about which the columns are evaluated.
@@ -78,10 +81,12 @@ pub struct Study {
     /// The inner products of the present table.
     formed: Formed,
     /// Hypotheses that the final fit refused, and whether they always act; they are not searched again.
-    refused: Vec<(Hypothesis, Option<usize>, bool)>,
+    refused: Vec<Claim>,
     /// The evidence, by joint, for the name of a constant torque that always acts, if the differences between recordings decide whether
     /// it is an offset or asymmetric friction (nats).
     pub directions: BTreeMap<usize, f64>,
+    /// What the search exchanged for something that explains hardly more, each with a hypothesis that took its place.
+    exchanged: Vec<(Claim, Claim)>,
     /// Names that the final fit gave up, because wrong inertial parameters explain nearly as much.
     pub given_up: Vec<(Hypothesis, Option<usize>)>,
 }
@@ -256,6 +261,7 @@ impl Study {
             trace: Trace::default(),
             formed: Formed::default(),
             refused: Vec::new(),
+            exchanged: Vec::new(),
             given_up: Vec::new(),
             directions: BTreeMap::new(),
             data,

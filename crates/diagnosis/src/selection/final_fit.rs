@@ -13,6 +13,7 @@ use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
 use crate::selection::payload::{self, possible::make_moments_possible, without_moment::without_moment};
 use crate::selection::predict::errors_with;
+use crate::selection::restored::{restore, take_back};
 use crate::selection::rivals::compared;
 use crate::selection::torque_constants;
 use crate::selection::unclear::{Unclear, unclear};
@@ -53,7 +54,9 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
             if is_inertial {
                 study.give_up(undecided);
             }
+            let claim = study.claim(undecided);
             drop_name(study, judged, undecided, rule);
+            take_back(study, judged, claim);
             continue;
         }
         let resampled = resample(study, &judged.named);
@@ -78,28 +81,6 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                 None => return resampled,
             },
         }
-    }
-}
-
-/// Adds `friction` again that was removed because of a joint's held-out error, if it is likely beside the background that replaced it: beside a
-/// wrong link, friction may have been a part of the error. Candidates of the catalogue keep their numbers.
-fn restore(study: &mut Study, judged: &mut Judged, friction: Vec<usize>) {
-    if friction.is_empty() {
-        return;
-    }
-    let products = study.training_products();
-    let problem = study.problem(&products);
-    let mut next = judged.named.clone();
-    for c in friction {
-        let with = problem.choose([&next.set[..], &[c]].concat(), &next.fit.weights);
-        if with.score < next.score && problem.is_possible(c, &with.fit) {
-            next = with;
-        }
-    }
-    if next.set.len() > judged.named.set.len() {
-        study.note("likely again beside another background", &judged.named, &next);
-        judged.members = judge::describe(&problem, &next);
-        judged.named = next;
     }
 }
 

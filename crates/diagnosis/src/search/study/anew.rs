@@ -7,7 +7,7 @@ use effects::laws::RIGID;
 use rayon::prelude::*;
 
 use super::linearisation_point::inertial_changes;
-use super::{LinearisationPoint, Study};
+use super::{Claim, LinearisationPoint, Study};
 use crate::data::Data;
 use crate::data::motion::Chunk;
 use crate::data::rigid::Rigid;
@@ -18,7 +18,7 @@ use crate::regression::columns::values;
 use crate::regression::fit::{Fit, Products};
 use crate::regression::strengths::PriorStrengths;
 use crate::regression::table::{Moving, Table};
-use crate::search::candidate::{Candidate, Hypothesis};
+use crate::search::candidate::Candidate;
 use crate::search::problem::Selection;
 use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SETTLED, SIMULATED_ANEW};
 
@@ -292,8 +292,8 @@ impl Study {
         self.refused.push(self.claim(candidate));
     }
 
-    /// What `candidate` claims: a hypothesis on a joint, and whether it always acts.
-    fn claim(&self, candidate: usize) -> (Hypothesis, Option<usize>, bool) {
+    /// What `candidate` claims.
+    pub fn claim(&self, candidate: usize) -> Claim {
         let Candidate { hypothesis, joint, .. } = self.candidates[candidate];
         (hypothesis, joint, self.always_acts(candidate))
     }
@@ -305,6 +305,29 @@ impl Study {
         if !self.given_up.contains(&name) {
             self.given_up.push(name);
         }
+    }
+
+    /// Records what an exchange of the search removed from `before`, and what it took in its place, if this explains hardly more.
+    pub fn record_exchange(&mut self, before: &Selection, after: &Selection) {
+        if before.score - after.score >= self.thresholds.least_evidence {
+            return;
+        }
+        let missing = |of: &Selection, from: &Selection| -> Vec<Claim> {
+            of.set.iter().filter(|c| !from.set.contains(c)).map(|&c| self.claim(c)).collect()
+        };
+        let (removed, taken) = (missing(before, after), missing(after, before));
+        let pairs = removed.iter().flat_map(|&removed| taken.iter().map(move |&taken| (removed, taken)));
+        self.exchanged.extend(pairs);
+    }
+
+    /// The candidates that the search exchanged for `claim`, which explained hardly more, and that may be taken. Each exchange is
+    /// returned once, because what is taken again may be dropped again.
+    pub fn take_exchanged_for(&mut self, claim: Claim) -> Vec<usize> {
+        let (exchanged, others) = self.exchanged.iter().partition(|(_, taken)| *taken == claim);
+        self.exchanged = others;
+        let exchanged: Vec<(Claim, Claim)> = exchanged;
+        let is_exchanged = |c: &usize| exchanged.iter().any(|(removed, _)| *removed == self.claim(*c));
+        self.allowed().into_iter().filter(is_exchanged).collect()
     }
 
     /// The number of refused hypotheses.
@@ -320,6 +343,7 @@ impl Study {
     /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
+        self.exchanged.clear();
         self.strengths =
             PriorStrengths { least: self.strengths.least.clone(), ..self.stated.first(self.data.arm.dof()) };
         let products = self.training_products();
