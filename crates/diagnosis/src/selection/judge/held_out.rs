@@ -63,6 +63,11 @@ pub fn harmful(problem: &Problem<'_>, held: &Products, selected: &Selection) -> 
             let lost = |joint| held.joint_loss(joint, without[joint]) - held.joint_loss(joint, with[joint]);
             let there: f64 = (0..with.len()).filter(|&joint| acts(joint)).map(lost).sum();
             let mut gain = there.max(held.loss(&without) - held.loss(&with));
+            // What moves the link against its drive also moves the links beyond it. On their small torques, a slight error of its size
+            // may weigh more than what it explains on its own joint.
+            if let Some(joint) = this.joint.filter(|_| this.hypothesis.spec().is_simulated) {
+                gain = gain.max(lost(joint));
+            }
             // The background in its place predicts as well, but costs more evidence. Friction and the inertia of the drive are present in
             // every joint, so that all recordings decide on them.
             let is_everywhere = this.hypothesis.spec().is_friction || this.hypothesis.is_drive_inertia();
