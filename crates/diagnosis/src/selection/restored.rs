@@ -28,6 +28,9 @@ pub fn restore(study: &mut Study, judged: &mut Judged, friction: Vec<usize>) {
 /// Adds the best of the effects that the search exchanged for the one of `claim`, which is no longer named, if it has the evidence of a name.
 pub fn take_back(study: &mut Study, judged: &mut Judged, claim: Claim) {
     let exchanged = study.take_exchanged_for(claim);
+    if exchanged.is_empty() {
+        return;
+    }
     let products = study.training_products();
     let problem = study.problem(&products);
     let named = &judged.named;
