@@ -43,7 +43,9 @@ impl LinkSide {
         let torque = |(((mass, drag), slope), [delta, speed, acceleration]): (((&f64, &f64), &f64), &[f64; 3])| {
             (mass - rotor) * acceleration + drag * speed + slope * delta
         };
-        mass.iter().zip(drag).zip(slope).zip(&self.ticks).map(torque).collect()
+        let mut torque: Vec<f64> = mass.iter().zip(drag).zip(slope).zip(&self.ticks).map(torque).collect();
+        rigid.on_links.add_change((joint, at), &self.ticks, &mut torque);
+        torque
     }
 }
 
@@ -74,13 +76,14 @@ pub fn sprung(
 ) -> Vec<[f64; 3]> {
     let rigid = motion.rigid;
     let (drag, slope) = (&rigid.by_velocity[at][at], &rigid.by_position[at][at]);
+    let on_links = |k: usize, order: usize| rigid.on_links.slopes(at, at, k)[order];
     let driven = Driven {
         period: motion.period,
         ticks: motion.ticks(),
         mass: |k: usize| rigid.mass[at][at][k] - rigid.rotor(at),
-        tau: |k: usize| motion.load(at, k),
-        drag: |k: usize| drag[k],
-        slope: |k: usize| slope[k],
+        tau: |k: usize| motion.through_gear(at, k),
+        drag: |k: usize| drag[k] + on_links(k, 1),
+        slope: |k: usize| slope[k] + on_links(k, 0),
     };
     driven.sprung(halfgap, stiffness, damping)
 }
@@ -144,7 +147,7 @@ where
 /// freely to the other side when the torque changes its sign; impacts are inelastic.
 pub fn gap(at: usize, halfgap: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
     let (h, rigid) = (motion.period, motion.rigid);
-    let tau = |k: usize| motion.load(at, k);
+    let tau = |k: usize| motion.through_gear(at, k);
     let ticks = motion.ticks();
     let mut out = Vec::with_capacity(ticks);
     // Positive torque: the drive pushes the link in the positive direction, so the link lags behind, δ = −halfgap.
@@ -152,14 +155,15 @@ pub fn gap(at: usize, halfgap: f64, motion: &Signals<'_>) -> Vec<[f64; 3]> {
     let mut speed = 0.0;
     let mut free = false;
     for k in 0..ticks {
-        let needed = tau(k) + rigid.by_position[at][at][k] * delta;
+        let [by_position, by_velocity, _] = rigid.on_links.slopes(at, at, k);
+        let needed = tau(k) + (rigid.by_position[at][at][k] + by_position) * delta;
         let mut acceleration = 0.0;
         if !free && needed * delta > 0.0 {
             free = true;
         }
         if free {
-            acceleration =
-                -(needed + rigid.by_velocity[at][at][k] * speed) / (rigid.mass[at][at][k] - rigid.rotor(at)).max(1e-9);
+            acceleration = -(needed + (rigid.by_velocity[at][at][k] + by_velocity) * speed)
+                / (rigid.mass[at][at][k] - rigid.rotor(at)).max(1e-9);
             let before = speed;
             speed += h * acceleration;
             delta += h * speed;

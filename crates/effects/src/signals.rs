@@ -1,5 +1,7 @@
 //! A section of motion, as regressors see it.
 
+use crate::OnLinks;
+
 /// Typical and largest values of each joint.
 #[derive(Clone, Debug)]
 pub struct Scales {
@@ -52,6 +54,8 @@ pub struct Rigid<'a> {
     /// The torque of the joint that τ does not contain, such as friction and the rotor's, without that of gaps and springs, as an
     /// earlier fit found it; none where empty (N m or N).
     pub rest: &'a [Vec<f64>],
+    /// The torques on the links' side of the gears that τ does not contain, as an earlier fit found them.
+    pub on_links: &'a OnLinks,
     /// Each link's share of τ: `[joint][link]`.
     pub links: &'a [Vec<Vec<f64>>],
     /// The ten columns of the torque regressor of a body on the tool, in the tool's frame: `[joint][parameter]`. If the model has a body
@@ -134,9 +138,15 @@ impl Signals<'_> {
         Some((0..self.ticks()).map(f).collect())
     }
 
-    /// The torque that the gear of a joint transmits to the links (N m or N): τ without that of the rotor.
+    /// The torque that the gear of a joint transmits to the links of the arm (N m or N): τ without that of the rotor.
     pub fn load(&self, joint: usize, tick: usize) -> f64 {
         self.rigid.tau[joint][tick] - self.rigid.rotor(joint) * self.qdd[joint][tick]
+    }
+
+    /// The torque that the gear of a joint transmits (N m or N): that to the links of the arm, and that of springs and couplings on them.
+    pub fn through_gear(&self, joint: usize, tick: usize) -> f64 {
+        let more = self.rigid.on_links.torque.get(joint).map_or(0.0, |torque| torque[tick]);
+        self.load(joint, tick) + more
     }
 
     /// The smooth sign of a joint's velocity.

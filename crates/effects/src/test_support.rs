@@ -4,7 +4,7 @@ use ::arm::{Arm, PARAMETERS_PER_LINK, Vector3, Workspace};
 use nalgebra::DMatrix;
 
 use crate::machine::Circumstance;
-use crate::{Base, Effect, Machine, Rigid, Scales, Signals, State, Term, sign};
+use crate::{Base, Effect, Machine, OnLinks, Rigid, Scales, Signals, State, Term, sign};
 
 /// An arm of two joints, with the tool 0.5 m beyond the second.
 const URDF: &str = r#"<robot name="two"><link name="base"/>
@@ -149,6 +149,7 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
             tau: &tau,
             rotors: &[],
             rest: &[],
+            on_links: &OnLinks::default(),
             links: &links,
             payload: &payload,
             fixed_bodies: &[],

@@ -46,6 +46,8 @@ pub(crate) struct Run {
 pub(crate) struct Machine<'a> {
     robot: &'a Robot,
     parts: Parts,
+    /// Whether one of its effects is left out.
+    is_without_one: bool,
 }
 
 impl<'a> Machine<'a> {
@@ -56,7 +58,7 @@ impl<'a> Machine<'a> {
         for (i, effect) in effects.iter().enumerate() {
             parts.extend(crate::fault::parts(effect, &arm, Some(i) != without)?);
         }
-        Ok(Self { robot, parts: Parts::new(parts, arm.dof()) })
+        Ok(Self { robot, parts: Parts::new(parts, arm.dof()), is_without_one: without.is_some() })
     }
 
     /// Runs the machine along `reference`; the encoders count steps of `quantum` (rad or m; 0 for none).
@@ -108,6 +110,8 @@ impl<'a> Machine<'a> {
 /// A run in progress.
 struct Simulation<'a> {
     parts: &'a Parts,
+    /// See [`Machine::is_without_one`].
+    is_without_one: bool,
     holding: Vec<f64>,
     robot: &'a Robot,
     quantum: f64,
@@ -146,6 +150,7 @@ impl<'a> Simulation<'a> {
         let size = ticks * n;
         let mut simulation = Self {
             parts,
+            is_without_one: machine.is_without_one,
             holding: begin.holding.to_vec(),
             robot: machine.robot,
             quantum,
@@ -193,6 +198,10 @@ impl<'a> Simulation<'a> {
             };
             let inertia = std::mem::take(&mut inertias[j]);
             if self.rotors[j].is_some() {
+                continue;
+            }
+            // Without its rotor's inertia, which is the effect that is left out, a drive cannot move apart from its link.
+            if inertia <= 0.0 && self.is_without_one {
                 continue;
             }
             if inertia <= 0.0 {

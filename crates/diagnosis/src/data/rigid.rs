@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use arm::{Arm, Inertia, PARAMETERS_PER_LINK, Workspace};
-use effects::{Base, Scales, Signals};
+use effects::{Base, OnLinks, Scales, Signals};
 use nalgebra::{Matrix6xX, Vector3};
 
 use crate::data::motion::Chunk;
@@ -32,6 +32,8 @@ pub struct Rigid {
     /// The torque of each joint that τ does not contain, without gaps and springs, as an earlier fit found it (N m or N); empty
     /// without one.
     pub rest: Vec<Vec<f64>>,
+    /// The torques on the links' side of the gears that τ does not contain, as an earlier fit found them.
+    pub on_links: OnLinks,
     /// Each link's share of τ: `[joint][link]`.
     pub links: Vec<Vec<Vec<f64>>>,
     /// The last link's ten columns of the torque regressor, in the tool's frame: `[joint][parameter]`. Four more if the arm has a
@@ -83,6 +85,7 @@ impl Rigid {
                 tau: &self.tau,
                 rotors: &self.rotors,
                 rest: &self.rest,
+                on_links: &self.on_links,
                 links: &self.links,
                 payload: &self.payload,
                 fixed_bodies: &self.fixed_bodies,
@@ -185,6 +188,7 @@ impl Rigid {
             tau: (0..n).map(|_| zeros()).collect(),
             rotors: arm.joints().iter().map(|joint| joint.rotor_inertia).collect(),
             rest: Vec::new(),
+            on_links: OnLinks::default(),
             links: square(),
             payload: (0..n).map(|_| (0..10).map(|_| zeros()).collect()).collect(),
             fixed_bodies: (0..n).map(|_| bodies.iter().map(|_| zeros()).collect()).collect(),

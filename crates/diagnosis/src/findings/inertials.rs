@@ -16,7 +16,8 @@ use crate::selection::predict::errors_with;
 use crate::selection::rivals::{allowance, probability};
 use crate::selection::special_forms::{in_place_of_link, special_forms};
 use crate::thresholds::{
-    LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, OF_NEIGHBOUR, PARTLY, SYSTEMATIC, WRIST,
+    LEAST_SHARE_EVERYWHERE, LEAST_WRONG_EVERYWHERE, LINK_OVER_CONSTANTS, LINK_STANDS_OUT, LISTED_SHARE, OF_NEIGHBOUR,
+    PARTLY, SYSTEMATIC, WRIST,
 };
 
 /// The links that differ from the URDF.
@@ -224,15 +225,13 @@ pub fn inertials(last: &FinalFit, are_requested: bool) -> Inertials {
         Some((margin, forms.into_iter().map(confusable).collect()))
     };
     let mut add = |joint: Option<usize>, shares: &[f64], parameters: BTreeMap<&'static str, Parameter>| {
+        let is_everywhere = joint.is_none();
         // Beside unmodelled structure on a joint, the changes may be a part of that structure.
-        let stands_out = |joint: usize| {
-            let unnamed = judged.unmodelled.iter().map(|member| member.shares[joint]);
-            explained[joint]
-                && shares[joint]
-                    >= study
-                        .thresholds
-                        .least_share
-                        .max(study.thresholds.beside_unmodelled * unnamed.fold(0.0, f64::max))
+        let least = if is_everywhere { LEAST_SHARE_EVERYWHERE } else { study.thresholds.least_share };
+        let stands_out = |at: usize| {
+            let unnamed = judged.unmodelled.iter().map(|member| member.shares[at]);
+            let least = least.max(study.thresholds.beside_unmodelled * unnamed.fold(0.0, f64::max));
+            explained[at] && shares[at] >= least
         };
         if !are_requested && !(0..dof).any(stands_out) {
             return;

@@ -32,6 +32,7 @@ mod friction_changes;
 mod linearisation_point;
 mod links;
 mod notes;
+mod on_links;
 mod own_friction;
 mod payloads;
 mod strengths;

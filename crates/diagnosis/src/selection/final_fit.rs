@@ -116,7 +116,7 @@ fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usi
 fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
     relinearise_once(study, judged, as_given);
     for _ in 0..MOST_SETTLING {
-        if study.has_settled(&judged.named.fit) {
+        if study.has_settled(&judged.named.fit, &judged.candidates()) {
             return;
         }
         relinearise_once(study, judged, as_given);

@@ -1,6 +1,8 @@
 //! Each effect of the catalogue, injected alone beside small friction, is named on its joint with its size, and no other
 //! effect is named.
 
+use std::collections::BTreeSet;
+
 use crate::support::{
     ELBOW, Injected, Motion, SHOULDER, baseline_friction, delayed_on, diagnosed, exports_what_it_reports, sentences,
     trio,
@@ -216,6 +218,33 @@ fn joint_elasticity() {
     let mut springs = diagnosis.report.findings.iter().filter(is_spring);
     let damping = springs.next().expect("it is named").parameters["damping"];
     assert_eq!(damping.ci95[0], 0.0, "{damping:?}");
+}
+
+/// A drive that turns with two joints loads the elastic gear of one of them, whose links' motion it also feels.
+#[test]
+fn an_elastic_joint_carries_the_coupling_with_its_link() {
+    let (viscous, inertia) = (1.0, 0.3);
+    let injected = |motion: &mut Motion, tau: &mut [f64]| {
+        for (joint, other) in [(SHOULDER, ELBOW), (ELBOW, SHOULDER)] {
+            tau[joint] += viscous * motion.qd[other] + inertia * motion.qdd[other];
+        }
+        motion.q[ELBOW] += tau[ELBOW] / 120.0;
+        baseline_friction(motion, tau);
+    };
+    let diagnosis = diagnosed(&trio(), &trio(), &injected, Vec::new());
+    let others = ["viscous_friction", "coulomb_friction", "rotor_inertia"];
+    let findings: Vec<_> = diagnosis.report.findings.iter().filter(|f| !others.contains(&f.effect)).collect();
+    let named: BTreeSet<_> = findings.iter().map(|f| (f.effect, f.joint.as_deref())).collect();
+    let expected = BTreeSet::from([("joint_elasticity", Some("elbow")), ("transmission_coupling", Some("elbow"))]);
+    assert_eq!(named, expected, "{:?}", sentences(&diagnosis));
+    for (effect, parameter, truth) in [
+        ("joint_elasticity", "stiffness", 120.0),
+        ("transmission_coupling", "viscous", viscous),
+        ("transmission_coupling", "inertia", inertia),
+    ] {
+        let found = findings.iter().find(|f| f.effect == effect).expect("it is named").parameters[parameter];
+        assert!((found.value / truth - 1.0).abs() < 0.1, "{effect}: {parameter} {found:?} instead of {truth}");
+    }
 }
 
 #[test]

@@ -59,6 +59,19 @@ fn the_truth_contains_the_given_effects() {
     assert_eq!(read, made.truth);
 }
 
+/// A saved diagnosis has the spring and the rotor as two effects. The share of the rotor is that of the rotor with its spring.
+#[test]
+fn a_spring_and_its_rotor_may_be_two_effects() {
+    let spring = Injected::new("joint_elasticity", Some("axis4")).with("stiffness", 800.0).with("damping", 2.0);
+    let rotor = Injected::new("rotor_inertia", Some("axis4")).with("inertia", 0.8);
+    let settings = Settings { training: 1, ..Settings::default() };
+    let made = conceal_effects(&seven_axis(), "two", &[spring.clone(), rotor.clone()], &settings).expect("it can be");
+    let shares: Vec<f64> = made.truth.injected.iter().filter_map(|effect| effect.expressed_share).collect();
+    assert!(shares.len() == 2 && shares.iter().all(|share| *share > 0.001), "{shares:?}");
+    let alone = conceal_effects(&seven_axis(), "one", &[spring], &settings).expect_err("its rotor is missing");
+    assert!(alone.to_string().contains("add rotor"), "{alone}");
+}
+
 #[test]
 fn impossible_effects_are_refused() {
     let robot = seven_axis();

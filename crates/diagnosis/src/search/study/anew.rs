@@ -1,12 +1,13 @@
 //! The study evaluated again: about the arm of a fit, for the final fit, or for another search.
 
-use effects::Term;
 use effects::arm::INERTIAL_PARAMETER;
 use effects::background::OWN_LOAD;
 use effects::laws::RIGID;
+use effects::{OnLinks, Term};
 use rayon::prelude::*;
 
 use super::linearisation_point::inertial_changes;
+use super::on_links::through_gear;
 use super::{Claim, LinearisationPoint, Study};
 use crate::data::Data;
 use crate::data::motion::Chunk;
@@ -20,7 +21,7 @@ use crate::regression::strengths::PriorStrengths;
 use crate::regression::table::{Moving, Table};
 use crate::search::candidate::Candidate;
 use crate::search::problem::Selection;
-use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SETTLED, SIMULATED_ANEW};
+use crate::thresholds::{LAST_BODY_STEP, MOST_BODIES, MOST_BODY_STEPS, SETTLED};
 
 impl Study {
     /// Evaluates everything about the arm of `fit`, so that the remaining tilts, encoder offsets and payloads are small.
@@ -143,7 +144,8 @@ impl Study {
         let last = &stages[stages.len() - 1].1;
         // The arm contains no effect, neither of this fit nor of an earlier selection.
         let carries = !last.carried.is_empty() || last.bare.is_some();
-        if !carries && !self.carries && !anyway {
+        let on_links = self.on_links(fit, kept);
+        if !carries && !self.carries && !anyway && self.are_near(&on_links) {
             return None;
         }
         self.carries = carries;
@@ -156,10 +158,10 @@ impl Study {
             .par_iter()
             .map(|chunk| LinearisationPoint::along(&stages, &nominal, chunk))
             .collect();
-        let before = self.with_rest_of(fit, rigid);
+        let before = self.with_rest_of(fit, rigid, on_links);
         let same_regressor = self.data.rigid.iter().zip(&before).all(|(now, before)| now.has_regressor_of(before));
         for joint in 0..self.data.motions.dof {
-            let before = || before.iter().map(|rigid| rigid.tau[joint].clone()).collect();
+            let before = || before.iter().map(|rigid| through_gear(rigid, joint)).collect();
             let along = self.simulated_along[joint].take().unwrap_or_else(before);
             self.simulated_along[joint] = self.is_near(joint, &along).then_some(along);
         }
@@ -176,10 +178,13 @@ impl Study {
         Some(set)
     }
 
-    /// Replaces the rigid model by `rigid`, to which the torques of the drives in `fit` are added; returns the one before.
-    fn with_rest_of(&mut self, fit: &Fit, mut rigid: Vec<Rigid>) -> Vec<Rigid> {
+    /// Replaces the rigid model by `rigid`, to which the torques of the drives in `fit` and those `on_links` are added; returns the one
+    /// before.
+    fn with_rest_of(&mut self, fit: &Fit, mut rigid: Vec<Rigid>, on_links: Vec<OnLinks>) -> Vec<Rigid> {
         let rest = self.rest_of(fit, &rigid);
-        rigid.iter_mut().zip(rest).for_each(|(rigid, rest)| rigid.rest = rest);
+        for ((rigid, rest), on_links) in rigid.iter_mut().zip(rest).zip(on_links) {
+            (rigid.rest, rigid.on_links) = (rest, on_links);
+        }
         std::mem::replace(&mut self.data.rigid, rigid)
     }
 
@@ -209,9 +214,11 @@ impl Study {
     }
 
     /// Whether the arm about which the columns are evaluated has settled: it contains the effects of `fit`, and the torques of the drives are
-    /// those of `fit`, as far as a torque constant that changes multiplies them.
-    pub fn has_settled(&self, fit: &Fit) -> bool {
-        self.have_drives_settled(fit) && self.has_arm_settled(fit)
+    /// those of `fit`, as far as a torque constant that changes multiplies them, as are the loads of gaps and springs by the candidates `kept`.
+    pub fn has_settled(&self, fit: &Fit, kept: &[usize]) -> bool {
+        let is_behind = |&column: &usize| self.table.terms[column].law.link_side.is_some();
+        let have_loads_settled = !fit.columns.iter().any(is_behind) || self.are_near(&self.on_links(fit, kept));
+        have_loads_settled && self.have_drives_settled(fit) && self.has_arm_settled(fit)
     }
 
     fn has_arm_settled(&self, fit: &Fit) -> bool {
@@ -244,15 +251,6 @@ impl Study {
             let change = rms(differences.map(|(now, before)| now - before)).unwrap_or(0.0);
             change <= SETTLED * self.data.scales.torque[joint]
         })
-    }
-
-    /// Whether the torque of the arm on `joint` is nearly the one along which its springs and gaps were simulated: `[chunk][tick]` (N m
-    /// or N).
-    fn is_near(&self, joint: usize, simulated_along: &[Vec<f64>]) -> bool {
-        let pairs = self.data.rigid.iter().zip(simulated_along);
-        let differences = pairs.flat_map(|(rigid, before)| rigid.tau[joint].iter().zip(before));
-        let change = rms(differences.map(|(now, before)| now - before)).unwrap_or(0.0);
-        change <= SIMULATED_ANEW * self.data.scales.torque[joint]
     }
 
     /// Removes the trial candidates that are not in `set`; returns the set's new indices, and the remaining terms. The table
