@@ -109,11 +109,19 @@ pub fn compared(study: &Study, problem: &Problem<'_>, selected: &Selection, memb
         let finer = finding.columns.iter().all(|column| other.columns.contains(column));
         // A wrong mass of one link resembles one of its neighbour, and so does the encoder offset of a parallel axis.
         let are_neighbours = finding.hypothesis == other.hypothesis && finding.hypothesis.spec().acts_before_its_joint;
+        // The mass of a link on a prismatic joint resembles the drives' inertias of its joint and of the parallel ones before it.
+        let is_drive_before = other.hypothesis.is_drive_inertia()
+            && finding.hypothesis.spec().acts_before_its_joint
+            && other.joint < finding.joint;
         !same_name
             && !finer
             && !is_excluded
             && other.hypothesis.name().is_some()
-            && (other.joint == finding.joint || other.joint.is_none() || finding.joint.is_none() || are_neighbours)
+            && (other.joint == finding.joint
+                || other.joint.is_none()
+                || finding.joint.is_none()
+                || are_neighbours
+                || is_drive_before)
             && !set.iter().any(|&known| {
                 let known = &study.candidates[known];
                 known.hypothesis == other.hypothesis && known.joint == other.joint
