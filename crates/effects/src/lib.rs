@@ -48,10 +48,9 @@ pub use form::{Form, Grounds, SetsIn, Turn};
 pub use kinds::{Kind, NAMES, experiment_against, spec};
 pub use laws::Times;
 pub use machine::{Circumstance, Contact, Dry, JointIndices, Machine, Scaled, Smooth, Sprung, State, sign};
-pub use on_links::OnLinks;
 pub use quantity::Quantity;
 pub use regressor::Regressor;
-pub use signals::{Base, Rigid, Scales, Signals};
+pub use signals::{Base, OnLinks, Rigid, Scales, Signals};
 pub use spec::{
     Against, Detectability, Effect, Experiment, InUrdf, Intervals, ONSET, Parameter, Range, Scope, Shape, Spec, Value,
 };

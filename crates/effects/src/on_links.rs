@@ -1,22 +1,7 @@
 //! Torques on the links' side of the gears that the model of the arm does not contain, such as those of springs and transmission couplings.
 
-use crate::{Signals, Term};
-
-/// The torques on the links' side of the gears along a motion, and how they change with it.
-#[derive(Clone, Debug, Default)]
-pub struct OnLinks {
-    /// The torque that each joint's gear must hold (N m or N): `[joint][tick]`; none where empty.
-    pub torque: Vec<Vec<f64>>,
-    slopes: Vec<Slope>,
-}
-
-/// The derivatives of the torque on one joint with respect to the position, velocity and acceleration of another one, or of itself.
-#[derive(Clone, Debug)]
-struct Slope {
-    on: usize,
-    of: usize,
-    by: [Vec<f64>; 3],
-}
+use crate::signals::Slope;
+use crate::{OnLinks, Signals, Term};
 
 /// The step of a difference, relative to the range of the position, to the velocity within which the smooth sign changes, and to 1 rad/s² or
 /// m/s². The laws are smooth, and most are linear.
@@ -57,23 +42,6 @@ impl OnLinks {
             slopes.extend(by.into_iter().enumerate().map(slope).filter(is_there));
         }
         Self { torque, slopes }
-    }
-
-    /// The derivatives of the torque on joint `on` with respect to the position, velocity and acceleration of joint `of` at `tick`.
-    pub(crate) fn slopes(&self, on: usize, of: usize, tick: usize) -> [f64; 3] {
-        let found = self.slopes.iter().find(|slope| (slope.on, slope.of) == (on, of));
-        found.map_or([0.0; 3], |slope| [0, 1, 2].map(|order| slope.by[order][tick]))
-    }
-
-    /// Adds to the torque on joint `on` what a motion δ, δ̇, δ̈ of the links of joint `of` relative to its drive changes.
-    pub(crate) fn add_change(&self, (on, of): (usize, usize), ticks: &[[f64; 3]], torque: &mut [f64]) {
-        let Some(Slope { by: [q, qd, qdd], .. }) = self.slopes.iter().find(|slope| (slope.on, slope.of) == (on, of))
-        else {
-            return;
-        };
-        for (tick, ([delta, speed, acceleration], torque)) in ticks.iter().zip(torque).enumerate() {
-            *torque += q[tick] * delta + qd[tick] * speed + qdd[tick] * acceleration;
-        }
     }
 }
 

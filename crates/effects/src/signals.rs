@@ -1,7 +1,5 @@
 //! A section of motion, as regressors see it.
 
-use crate::OnLinks;
-
 /// Typical and largest values of each joint.
 #[derive(Clone, Debug)]
 pub struct Scales {
@@ -15,6 +13,8 @@ pub struct Scales {
     pub middle: Vec<f64>,
     /// The difference of the highest and the lowest position (rad or m).
     pub range: Vec<f64>,
+    /// The lowest and the highest position in the recordings that are fitted (rad or m).
+    pub fitted: Vec<[f64; 2]>,
     /// The standard deviation of the measured torque (N m or N).
     pub torque: Vec<f64>,
 }
@@ -41,6 +41,41 @@ pub struct Base {
     pub inertia: [Vec<f64>; 2],
     /// The torque on each joint for an acceleration of the base (kg m² or kg m): `[joint][axis]`.
     pub coupling: Vec<[Vec<f64>; 2]>,
+}
+
+/// The torques on the links' side of the gears along a motion, and how they change with it.
+#[derive(Clone, Debug, Default)]
+pub struct OnLinks {
+    /// The torque that each joint's gear must hold (N m or N): `[joint][tick]`; none where empty.
+    pub torque: Vec<Vec<f64>>,
+    pub(crate) slopes: Vec<Slope>,
+}
+
+/// The derivatives of the torque on one joint with respect to the position, velocity and acceleration of another one, or of itself.
+#[derive(Clone, Debug)]
+pub(crate) struct Slope {
+    pub on: usize,
+    pub of: usize,
+    pub by: [Vec<f64>; 3],
+}
+
+impl OnLinks {
+    /// The derivatives of the torque on joint `on` with respect to the position, velocity and acceleration of joint `of` at `tick`.
+    pub(crate) fn slopes(&self, on: usize, of: usize, tick: usize) -> [f64; 3] {
+        let found = self.slopes.iter().find(|slope| (slope.on, slope.of) == (on, of));
+        found.map_or([0.0; 3], |slope| [0, 1, 2].map(|order| slope.by[order][tick]))
+    }
+
+    /// Adds to the torque on joint `on` what a motion δ, δ̇, δ̈ of the links of joint `of` relative to its drive changes.
+    pub(crate) fn add_change(&self, (on, of): (usize, usize), ticks: &[[f64; 3]], torque: &mut [f64]) {
+        let Some(Slope { by: [q, qd, qdd], .. }) = self.slopes.iter().find(|slope| (slope.on, slope.of) == (on, of))
+        else {
+            return;
+        };
+        for (tick, ([delta, speed, acceleration], torque)) in ticks.iter().zip(torque).enumerate() {
+            *torque += q[tick] * delta + qd[tick] * speed + qdd[tick] * acceleration;
+        }
+    }
 }
 
 /// The rigid model along the motion. The first index is the joint, the last one the tick. A list that is not needed may be

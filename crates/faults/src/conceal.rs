@@ -101,7 +101,8 @@ pub fn conceal_effects(
     stage.sensors.ticks = (1000 / settings.rate) as usize;
     stage.sensors.jitter = settings.jitter;
     stage.sensors.lost = settings.lost;
-    let mut effects = effects.to_vec();
+    let joint_of = |name: &str| robot.arm().joints().iter().position(|joint| joint.name == name);
+    let mut effects: Vec<Injected> = effects.iter().map(|effect| effect.listed_for_outer_joint(joint_of)).collect();
     let last = stage.held_out.time(stage.held_out.ticks());
     for (k, effect) in effects.iter().enumerate() {
         let fail = |reason: String| {
@@ -113,6 +114,23 @@ pub fn conceal_effects(
             return fail(format!(
                 "its onset is {onset} s; the recordings are from 0 to {last:.0} s: give a time in them, or none"
             ));
+        }
+        let is_its_rotor = |other: &Injected| other.effect == "rotor_inertia" && other.joint == effect.joint;
+        if effect.parameters.contains_key("rotor") && effects.iter().any(is_its_rotor) {
+            return fail(
+                "its rotor and the rotor_inertia on its joint are one inertia; leave one of the two out".into(),
+            );
+        }
+        if let ("external_contact", Some(from)) = (effect.effect.as_str(), effect.number("start")) {
+            let to = from + effect.number("duration").unwrap_or(0.0);
+            let recordings = || stage.training.iter().chain([&stage.held_out]);
+            let span = |run: &crate::motion::Reference| [run.time(0), run.time(run.ticks())];
+            if !recordings().map(span).any(|[first, last]| first <= from && to <= last) {
+                let spans =
+                    recordings().map(span).map(|[first, last]| format!("{:.0} to {last:.0} s", first.round() + 0.0));
+                let spans = spans.collect::<Vec<_>>().join(", ");
+                return fail(format!("it lasts from {from} to {to} s; let it be within one recording ({spans})"));
+            }
         }
         if effects[..k].iter().any(|other| other.is_same_effect(effect)) {
             return fail("is given twice on one joint; one is one effect".into());

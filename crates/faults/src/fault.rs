@@ -28,6 +28,7 @@ mod gravity_compensator;
 mod gravity_misalignment;
 mod history_unknown;
 mod hysteresis_unknown;
+mod inertial_parameters;
 mod inertial_scale;
 mod joint_elasticity;
 mod link_inertial_error;
@@ -74,6 +75,7 @@ pub(crate) static FAULTS: &[Fault] = &[
     encoder_offset::FAULT,
     spring::FAULT,
     gravity_compensator::FAULT,
+    inertial_parameters::FAULT,
     external_contact::FAULT,
     cross_coupling_unknown::FAULT,
     time_periodic_unknown::FAULT,
@@ -97,8 +99,10 @@ pub(crate) struct Fault {
     pub is_outside: bool,
     /// Its forms in addition to the first, which is the textbook form (or the simplest).
     pub forms: &'static [&'static str],
-    /// Its parameters in addition to the catalogue's; all have defaults.
+    /// Its parameters in addition to the catalogue's that only such a form has.
     pub form_parameters: &'static [&'static str],
+    /// Its further parameters in addition to the catalogue's; all have defaults.
+    pub more_parameters: &'static [&'static str],
     /// Whether a robot can have it.
     pub can_be_on: fn(&Robot) -> bool,
     /// Whether it may begin at an onset when it is drawn.
@@ -176,6 +180,7 @@ impl Fault {
         is_outside: false,
         forms: &[],
         form_parameters: &[],
+        more_parameters: &[],
         can_be_on: |_| true,
         may_have_onset: false,
         similar_faults: None,
@@ -236,9 +241,14 @@ pub fn families() -> Vec<&'static str> {
     names(|fault| !fault.is_outside && fault.is_drawn).split_off(2)
 }
 
-/// The parameters of `effect` in addition to the catalogue's; all have defaults.
+/// The parameters of `effect` that only an effect with a form has.
 pub fn form_parameters(effect: &str) -> &'static [&'static str] {
     Fault::named(effect).map_or(&[], |fault| fault.form_parameters)
+}
+
+/// The further parameters of `effect` in addition to the catalogue's; all have defaults.
+pub fn more_parameters(effect: &str) -> &'static [&'static str] {
+    Fault::named(effect).map_or(&[], |fault| fault.more_parameters)
 }
 
 fn names(counts: impl Fn(&Fault) -> bool) -> Vec<&'static str> {

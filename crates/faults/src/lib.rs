@@ -46,7 +46,7 @@ pub use case::write_case;
 pub use case_machine::{CaseMachine, Driven};
 pub use conceal::{Concealment, RATES, Settings, conceal_case, conceal_effects};
 pub use error::FaultError;
-pub use fault::{catalogue, families, form_parameters, is_outside, outside};
+pub use fault::{catalogue, families, form_parameters, is_outside, more_parameters, outside};
 pub use machine::{Inverse, LinkMotion, Measured, VelocityFilter};
 pub use motion::{DURATION, PAUSE};
 pub use record_again::record_again;

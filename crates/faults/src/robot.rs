@@ -60,6 +60,15 @@ impl Robot {
         Ok(self)
     }
 
+    /// The robot with the inertias of its drives that its URDF states, by joint (kg m² or kg).
+    pub fn with_stated_rotor_inertias(mut self, stated: &[(String, f64)]) -> Self {
+        let of =
+            |joint: &arm::Joint| stated.iter().find(|(name, _)| *name == joint.name).map_or(0.0, |(_, rotor)| *rotor);
+        let rotors: Vec<f64> = self.arm.joints().iter().map(of).collect();
+        self.arm = self.arm.with_rotor_inertias(&rotors);
+        self
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         self.arm.name()
@@ -95,9 +104,15 @@ impl Robot {
             })
     }
 
-    /// The arm with its drives' inertias.
+    /// The arm with its drives' inertias, those that the URDF states and those that it omits.
     pub(crate) fn driven(&self) -> Arm {
-        self.arm.clone().with_rotor_inertias(&self.rotors)
+        let rotors: Vec<f64> = (0..self.rotors.len()).map(|j| self.rotor(j)).collect();
+        self.arm.clone().with_rotor_inertias(&rotors)
+    }
+
+    /// The inertia of the drive of joint `j` (kg m² or kg).
+    pub(crate) fn rotor(&self, j: usize) -> f64 {
+        self.arm.joints()[j].rotor_inertia + self.rotors[j]
     }
 
     /// The centres of its motions (rad or m).
@@ -109,7 +124,7 @@ impl Robot {
     /// free.
     pub(crate) fn inertia(&self, j: usize) -> f64 {
         let (held, free) = self.inertias[j];
-        (held * free).sqrt() + self.rotors[j]
+        (held * free).sqrt() + self.rotor(j)
     }
 
     /// The inertia that joint `j` moves while the other joints are held, without its drive (kg m² or kg).
@@ -129,15 +144,16 @@ impl Robot {
 
     fn sample_poses(&mut self) {
         let n = self.arm.dof();
-        let mut workspace = Workspace::new(&self.arm);
+        let links = self.arm.clone().with_rotor_inertias(&vec![0.0; n]);
+        let mut workspace = Workspace::new(&links);
         let mut random = ChaCha8Rng::seed_from_u64(0);
         let mut matrix = DMatrix::zeros(n, n);
         let mut gravity = vec![0.0; n];
         for _ in 0..POSES {
             let q: Vec<f64> = self.home.iter().map(|home| home + random.random_range(-0.5..0.5)).collect();
-            self.arm.mass_matrix(&mut workspace, &q, &mut matrix);
+            links.mass_matrix(&mut workspace, &q, &mut matrix);
             let inverse = matrix.clone().try_inverse();
-            self.arm.gravity_torque(&mut workspace, &q, &mut gravity);
+            links.gravity_torque(&mut workspace, &q, &mut gravity);
             for (holding, gravity) in self.holding.iter_mut().zip(&gravity) {
                 *holding += gravity * gravity / POSES as f64;
             }

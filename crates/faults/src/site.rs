@@ -79,7 +79,7 @@ impl<'a> Site<'a> {
 
     /// The baseline inertia of the joint's drive, 0 where it has none (kg m² or kg).
     pub(crate) fn rotor_inertia(&self) -> f64 {
-        self.robot.rotor_inertias()[self.joint]
+        self.robot.rotor(self.joint)
     }
 
     /// A factor that differs from 1 by a relative amount in `parts`, or by more, if errors of the URDF's masses, of

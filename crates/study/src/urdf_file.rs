@@ -79,6 +79,12 @@ pub fn diagnosed_joints(urdf: &str) -> anyhow::Result<Vec<String>> {
     Ok(ours.map(|(name, _)| name).collect())
 }
 
+/// `urdf` without the marks of a diagnosis, so that its friction is a placeholder as in any other URDF.
+pub fn with_unknown_friction(urdf: &str) -> String {
+    let (key, value) = SOURCE;
+    urdf.replace(&format!(" {key}=\"{value}\""), "")
+}
+
 /// The drive inertias that `urdf` states for Drake, by joint (kg m² at the joint).
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context, ensure};
 use faults::{Campaign, Concealment, FaultError, Robot, Settings, conceal_case, conceal_effects, write_case};
 use rayon::prelude::*;
-use study::robot;
+use study::{robot, urdf_file};
 
 use crate::cli::{ChainArgs, ConcealArgs};
 use crate::library;
@@ -61,7 +61,10 @@ fn robot(name: &str, chain: &ChainArgs) -> anyhow::Result<Robot> {
     let arm = file.arm(&chain.options(&[])).context("--robot")?;
     // The recordings contain the arm only, so that the cases must be diagnosed without flags of the chain.
     let text = library::serial_urdf(&file.text, &arm).with_context(doing)?;
-    let robot = Robot::new(text, &file.path).with_context(doing)?;
+    // A diagnosis of the case would take friction that a diagnosis wrote as known, and the simulated robot has none but what is injected.
+    let text = urdf_file::with_unknown_friction(&text);
+    let stated = urdf_file::stated_drive_inertias(&text).with_context(doing)?;
+    let robot = Robot::new(text, &file.path).with_context(doing)?.with_stated_rotor_inertias(&stated);
     match library::rotor_inertias(name) {
         Some(rotors) => robot.with_rotor_inertias(&rotors).with_context(doing),
         None => Ok(robot),

@@ -29,6 +29,7 @@ mod anew;
 mod constants;
 mod formed;
 mod friction_changes;
+mod growth;
 mod linearisation_point;
 mod links;
 mod notes;

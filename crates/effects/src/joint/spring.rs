@@ -1,6 +1,6 @@
 //! A torque that depends on the joint's position.
 
-use crate::laws::{ONE, POSITION, TENT, power, tent};
+use crate::laws::{ONE, POSITION, TENT, power, tent_of};
 use crate::{
     Against, Detectability, Effect, Fitted, Form, Parameter, Quantity, SetsIn, Shape, Spec, State, Term, Times, Turn,
 };
@@ -205,7 +205,7 @@ fn torque(terms: &[(Term, f64)], q: f64) -> f64 {
         } else if term.is(&POSITION) {
             value * q.powi(power(&term))
         } else if term.is(&TENT) {
-            value * tent(q, term.sizes[0], term.sizes[1])
+            value * tent_of(&term, q)
         } else {
             0.0
         }

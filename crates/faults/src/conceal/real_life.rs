@@ -131,7 +131,7 @@ fn small_effects(joint: &str, spread: f64, load: f64, random: &mut ChaCha8Rng) -
 
 /// An elastic gearbox between the rotor of a joint's drive and its link.
 fn gearbox(robot: &Robot, j: usize, random: &mut ChaCha8Rng) -> Injected {
-    let (link, own) = (robot.link_inertia(j), robot.rotor_inertias()[j]);
+    let (link, own) = (robot.link_inertia(j), robot.rotor(j));
     let drawn = link * random.random_range(0.3..1.0);
     let rotor = if own > 0.0 { own } else { drawn };
     let frequency = TAU * log_uniform(GEARBOX.0, GEARBOX.1, random);

@@ -134,7 +134,7 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Baseline friction as effects, on joints where `effects` have no dry friction of their own; and the small
+    /// Baseline friction as effects, on joints where `effects` have no such friction of their own; and the small
     /// effects of real joints.
     pub(crate) fn background(&self, effects: &[Injected]) -> Vec<Injected> {
         let mut background = self.baseline(effects);
@@ -151,9 +151,13 @@ impl<'a> Stage<'a> {
             let own = |effect: &Injected| {
                 effect.joint.as_deref() == Some(&joint.name) && effect.leaves() == Leaves::DryFriction
             };
+            let has = |name: &str| effects.iter().any(|e| e.effect == name && e.joint.as_deref() == Some(&joint.name));
             // A friction curve, drift or load dependence includes the plain friction.
-            if !effects.iter().any(own) {
+            if !effects.iter().any(own) && !has("coulomb_friction") {
                 background.push(Injected::new("coulomb_friction", Some(&joint.name)).with("level", *coulomb));
+            }
+            if has("viscous_friction") {
+                continue;
             }
             let viscous = Injected::new("viscous_friction", Some(&joint.name)).with("coefficient", *viscous);
             background.push(if *exponent == 1.0 {

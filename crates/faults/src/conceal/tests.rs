@@ -72,6 +72,22 @@ fn a_spring_and_its_rotor_may_be_two_effects() {
     assert!(alone.to_string().contains("add rotor"), "{alone}");
 }
 
+/// A coupling is symmetric; given friction takes the place of the baseline friction on its joint.
+#[test]
+fn an_effect_is_listed_once_and_for_the_outer_joint() {
+    let coupling = Injected::new("transmission_coupling", Some("axis3")).with("other", "axis4").with("viscous", 0.3);
+    let coupling = coupling.with("inertia", 0.01);
+    let friction = Injected::new("viscous_friction", Some("axis1")).with("coefficient", 0.2);
+    let settings = Settings { training: 1, background_friction: true, ..Settings::default() };
+    let made = conceal_effects(&seven_axis(), "one", &[coupling, friction], &settings).expect("it can be");
+    let on = |name: &str, joint: &str| {
+        let is_it = |e: &&Injected| e.effect == name && e.joint.as_deref() == Some(joint);
+        made.truth.injected.iter().filter(is_it).count()
+    };
+    assert_eq!((on("transmission_coupling", "axis4"), on("transmission_coupling", "axis3")), (1, 0));
+    assert_eq!((on("viscous_friction", "axis1"), on("coulomb_friction", "axis1")), (1, 1));
+}
+
 #[test]
 fn impossible_effects_are_refused() {
     let robot = seven_axis();
@@ -89,6 +105,19 @@ fn impossible_effects_are_refused() {
     let offset = Injected::new("torque_offset", Some("axis1")).with("offset", 1.0);
     has(refuse(offset.formed("round")), "one only");
     has(refuse(Injected::new("actuation_delay", Some("axis1")).with("delay", 2.0)), "delay");
+    let payload = Injected::new("payload", None).with("mass", 1.0).with("com", serde_json::json!([0.0, 0.0, 0.05]));
+    let inertia = serde_json::json!([0.02, 0.0, 0.001, 0.0, 0.0, 0.001]);
+    has(refuse(payload.with("inertia", inertia)), "no body has the inertia");
+    let contact = |start: f64| {
+        let force = serde_json::json!([10.0, 0.0, 0.0]);
+        Injected::new("external_contact", None).with("force", force).with("start", start).with("duration", 1.0)
+    };
+    has(refuse(contact(26.0)), "within one recording (0 to 25 s");
+    let rotor = Injected::new("rotor_inertia", Some("axis2")).with("inertia", 1.0);
+    let sprung = Injected::new("joint_elasticity", Some("axis2")).with("stiffness", 3000.0).with("damping", 5.0);
+    let two = [sprung.with("rotor", 0.6), rotor];
+    let error = conceal_effects(&robot, "no", &two, &Settings::default()).expect_err("it is refused");
+    has(error.to_string(), "are one inertia");
     let rate = Settings { rate: 300, ..Settings::default() };
     has(conceal_effects(&robot, "no", &[], &rate).expect_err("it is refused").to_string(), "500");
 }

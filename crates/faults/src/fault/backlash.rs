@@ -6,7 +6,7 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "backlash",
     forms: &["rounded"],
-    form_parameters: &["rotor", "stiffness", "damping"],
+    more_parameters: &["rotor", "stiffness", "damping"],
     leaves: Leaves::Rotor,
     may_oscillate: true,
     similar_faults: Some(SimilarFaults::BetweenCommandAndLink),

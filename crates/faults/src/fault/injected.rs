@@ -28,6 +28,20 @@ impl Injected {
         self.fault().map_or(Leaves::Nothing, |fault| fault.leaves)
     }
 
+    /// This effect, listed for the outer of its two joints if it acts alike on both, as the catalogue lists it. `place` gives the index of a
+    /// joint.
+    pub(crate) fn listed_for_outer_joint(&self, place: impl Fn(&str) -> Option<usize>) -> Self {
+        let mut listed = self.clone();
+        let other = self.parameters.get("other").and_then(serde_json::Value::as_str);
+        if let ("transmission_coupling", Some(own), Some(other)) = (self.effect.as_str(), self.joint.as_deref(), other)
+            && place(own) < place(other)
+        {
+            listed.parameters.insert("other".into(), own.into());
+            listed.joint = Some(other.to_owned());
+        }
+        listed
+    }
+
     /// Whether `other` is the same effect on the same joint (with the same other joint), and both begin at an onset or
     /// neither does.
     pub(crate) fn is_same_effect(&self, other: &Self) -> bool {

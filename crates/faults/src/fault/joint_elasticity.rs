@@ -5,7 +5,8 @@ use super::prelude::*;
 pub(super) const FAULT: Fault = Fault {
     name: "joint_elasticity",
     forms: &["hardening"],
-    form_parameters: &["rotor", "hardening_torque"],
+    form_parameters: &["hardening_torque"],
+    more_parameters: &["rotor"],
     leaves: Leaves::Rotor,
     similar_faults: Some(SimilarFaults::BetweenCommandAndLink),
     draw: |bare, at, random| {

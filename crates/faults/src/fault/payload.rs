@@ -1,9 +1,12 @@
 //! A mass at the tool that the URDF does not have; or, if negative, one that only the URDF has.
 
+use super::inertial_parameters::tensor;
 use super::prelude::*;
 
 pub(super) const FAULT: Fault = Fault {
     name: "payload",
+    // A known one and one that a diagnosis has found in addition are two.
+    may_repeat: true,
     may_have_onset: true,
     draw: |bare, at, random| {
         let mass = at.load() * random.random_range(0.25..if at.hard { 0.8 } else { 1.6 });
@@ -17,15 +20,10 @@ pub(super) const FAULT: Fault = Fault {
             .with("inertia", json!([moment, 0.0, moment, 0.0, 0.0, moment].map(|moment| sign * moment)))
     },
     read: |reader| {
-        let inertia = if reader.has("inertia") { reader.numbers("inertia")? } else { [0.0; 6] };
-        let [xx, xy, yy, xz, yz, zz] = inertia;
         let mass = reader.number("mass")?;
         let sign = if mass < 0.0 { -1.0 } else { 1.0 };
-        let payload = Inertia {
-            mass: sign * mass,
-            com: Vector3::from(reader.numbers("com")?),
-            tensor: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * sign,
-        };
+        let payload =
+            Inertia { mass: sign * mass, com: Vector3::from(reader.numbers("com")?), tensor: tensor(reader)? * sign };
         let body = Property::Body(Body::Payload(payload));
         if mass >= 0.0 {
             return Ok(vec![body.into()]);

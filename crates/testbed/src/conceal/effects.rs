@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use arm::Arm;
-use faults::{Injected, form_parameters};
+use faults::{Injected, form_parameters, more_parameters};
 
 use study::Source;
 use study::effect_file;
@@ -31,8 +31,17 @@ pub fn load(path: &Path, arm: &Arm) -> anyhow::Result<Vec<Injected>> {
         let effect: Injected = serde_json::from_value(json).map_err(|error| fail(error.to_string()))?;
         if !faults::is_outside(&effect.effect) {
             // Keys that the catalogue does not have belong to this command; the others are checked as for any effect.
-            let own = form_parameters(&effect.effect);
-            for key in ["onset", "form"].iter().chain(own) {
+            let spec = effects::CATALOGUE.iter().find(|spec| spec.name == effect.effect);
+            let is_own = |key: &&&str| spec.is_none_or(|spec| spec.parameters.iter().all(|known| known.key != **key));
+            for key in form_parameters(&effect.effect).iter().filter(is_own) {
+                if table.remove(*key).is_some() && effect.form.is_none() {
+                    return Err(fail(format!(
+                        "{}: {key} belongs to a form; add form = \"…\" (docs/conceal.md lists them), or leave {key} out",
+                        effect.effect
+                    )));
+                }
+            }
+            for key in ["onset", "form"].iter().chain(more_parameters(&effect.effect)) {
                 table.remove(*key);
             }
             if effect.is_not_mounted() {
