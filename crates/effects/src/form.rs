@@ -65,31 +65,14 @@ impl Grounds<'_> {
     pub fn tents(&self, joint: usize, of: usize, count: usize, times: Times) -> Vec<Term> {
         let width = self.scales.range[of] / (count - 1) as f64;
         let lowest = self.scales.middle[of] - 0.5 * self.scales.range[of];
-        let centre = |k: usize| lowest + width * k as f64;
-        // What no fitted recording reaches has the torque of the nearest place that one does.
-        let [low, high] = self.scales.fitted[of];
-        let first = (0..count).find(|&k| centre(k) >= low - REACHED * width).unwrap_or(0);
-        let last = (0..count).rfind(|&k| centre(k) <= high + REACHED * width).unwrap_or(count - 1);
-        let (first, last) = if last < first + LEAST_TENTS - 1 { (0, count - 1) } else { (first, last) };
-        (first..=last)
+        (0..count)
             .map(|k| {
-                let ends = match k {
-                    k if k == first && first > 0 => -1.0,
-                    k if k == last && last < count - 1 => 1.0,
-                    _ => 0.0,
-                };
                 let tent = Term::on(&TENT, joint).of(of).form(times as usize);
-                tent.sized([centre(k), width, ends])
+                tent.sized([lowest + width * k as f64, width])
             })
             .collect()
     }
 }
-
-/// A tent is reached if a fitted recording comes within this part of its half width to its centre. Source: that of `VISITED`, at which a
-/// spring's curve is judged.
-const REACHED: f64 = 0.5;
-/// The fewest tents of a curve. Source: two have the number of columns of a straight line.
-const LEAST_TENTS: usize = 3;
 
 /// The order in which forms are tried and summed. Of forms that promise equal gains, the earlier one is tried. First come the
 /// effects on joints, joint by joint; then links and the whole arm; last the effects that are simulated at sizes from the
@@ -183,42 +166,4 @@ pub struct SetsIn {
     pub forms: fn(usize) -> Vec<Vec<Term>>,
     /// The number of columns of the first form with which the onset is searched.
     pub looked_for_with: usize,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::laws::tent_of;
-    use crate::test_support::{along, arm};
-
-    /// A curve is constant beyond the positions of the fitted recordings: a tent that they do not reach would have a height of zero.
-    #[test]
-    fn tents_that_no_fitted_recording_reaches_are_left_out() {
-        along(|motion| {
-            let mut scales = motion.scales.clone();
-            let mut tents = |fitted: [f64; 2]| {
-                scales.fitted[0] = fitted;
-                let (arm, none) = (arm(), [0.0; 2]);
-                let grounds = Grounds {
-                    arm: &arm,
-                    scales: &scales,
-                    span: None,
-                    times: &[],
-                    has_change: false,
-                    mass: &none,
-                    largest: &none,
-                    needed: &none,
-                    inertial: &none,
-                };
-                grounds.tents(0, 0, 5, Times::One)
-            };
-            let centres = |terms: &[Term]| terms.iter().map(|term| term.sizes[0]).collect::<Vec<f64>>();
-            assert_eq!(centres(&tents([-1.0, 1.0])), [-1.0, -0.5, 0.0, 0.5, 1.0]);
-            let some = tents([-0.2, 1.0]);
-            assert_eq!(centres(&some), [0.0, 0.5, 1.0]);
-            let heights = [-0.9, 0.25, 1.5].map(|q| tent_of(&some[0], q));
-            assert_eq!(heights, [1.0, 0.5, 0.0]);
-            assert_eq!(tent_of(&some[2], 1.25), 0.5);
-        });
-    }
 }

@@ -83,14 +83,14 @@ pub enum Times {
     Speed,
 }
 
-/// A tent function of the position of joint `of[1]`. Sizes are its centre and half its width (rad or m), and −1 or 1 if it stays one below
-/// or above its centre; the form is its factor ([`Times`]).
+/// A tent function of the position of joint `of[1]`. Sizes are its centre and half its width (rad or m); the form is its factor
+/// ([`Times`]).
 pub static TENT: Law = Law {
     name: "tent",
     column: |term, joint, motion| {
-        let (of, qd) = (term.of[1], &motion.qd[joint]);
+        let (of, [centre, width, ..], qd) = (term.of[1], term.sizes, &motion.qd[joint]);
         motion.map(|k| {
-            let height = tent_of(term, motion.q[of][k]);
+            let height = tent(motion.q[of][k], centre, width);
             match term.form {
                 form if form == Times::Velocity as usize => height * qd[k],
                 form if form == Times::Speed as usize => height * qd[k].abs(),
@@ -104,12 +104,6 @@ pub static TENT: Law = Law {
 /// A tent function: one at `centre`, zero at a distance of `width` and more.
 pub fn tent(x: f64, centre: f64, width: f64) -> f64 {
     (1.0 - ((x - centre) / width).abs()).max(0.0)
-}
-
-/// The height of the tent of a [`TENT`] at a position `x`.
-pub fn tent_of(term: &Term, x: f64) -> f64 {
-    let [centre, width, ends, _] = term.sizes;
-    if ends * (x - centre) > 0.0 { 1.0 } else { tent(x, centre, width) }
 }
 
 /// sin or cos of a phase (rad).

@@ -13,8 +13,6 @@ pub struct Scales {
     pub middle: Vec<f64>,
     /// The difference of the highest and the lowest position (rad or m).
     pub range: Vec<f64>,
-    /// The lowest and the highest position in the recordings that are fitted (rad or m).
-    pub fitted: Vec<[f64; 2]>,
     /// The standard deviation of the measured torque (N m or N).
     pub torque: Vec<f64>,
 }

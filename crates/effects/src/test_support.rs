@@ -17,7 +17,7 @@ const URDF: &str = r#"<robot name="two"><link name="base"/>
 const TICKS: usize = 100;
 const PERIOD: f64 = 0.01;
 
-pub fn arm() -> Arm {
+fn arm() -> Arm {
     Arm::from_urdf_text(URDF, "test.urdf").expect("it is an arm")
 }
 
@@ -134,7 +134,6 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
         turning: vec![3e-10; 2],
         middle: vec![0.0; 2],
         range: vec![2.0; 2],
-        fitted: vec![[-1.0, 1.0]; 2],
         torque: vec![1.0; 2],
     };
     visit(&Signals {

@@ -187,7 +187,6 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
         turning: Vec::new(),
         middle: Vec::new(),
         range: Vec::new(),
-        fitted: Vec::new(),
         torque,
     };
     for joint in 0..motions.dof {
@@ -202,9 +201,6 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
             (quantile_of_sorted(&positions, RANGE_QUANTILES.0), quantile_of_sorted(&positions, RANGE_QUANTILES.1));
         scales.middle.push(0.5 * (low + high));
         scales.range.push((high - low).max(1e-6));
-        let fitted = motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk)).flat_map(|chunk| &chunk.q[joint]);
-        let [low, high] = fitted.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &q| [low.min(q), high.max(q)]);
-        scales.fitted.push([low, high]);
     }
     scales
 }

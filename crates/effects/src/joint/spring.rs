@@ -1,6 +1,6 @@
 //! A torque that depends on the joint's position.
 
-use crate::laws::{ONE, POSITION, TENT, power, tent_of};
+use crate::laws::{ONE, POSITION, TENT, power, tent};
 use crate::{
     Against, Detectability, Effect, Fitted, Form, Parameter, Quantity, SetsIn, Shape, Spec, State, Term, Times, Turn,
 };
@@ -46,7 +46,9 @@ pub static SPRING: Spec = Spec {
         let terms = estimate.terms();
         let shape: Vec<(Term, Option<usize>)> =
             terms.into_iter().enumerate().map(|(k, term)| (term.always(), estimate.place(k))).collect();
+        let reached = reached(&shape, estimate.best());
         let torque = |draw: &[f64], q: f64| -> f64 {
+            let q = reached.map_or(q, |[first, last]| q.clamp(first, last));
             let drawn = |&(term, place): &(Term, Option<usize>)| (term, place.map_or(0.0, |place| draw[place]));
             torque(&shape.iter().map(drawn).collect::<Vec<_>>(), q)
         };
@@ -197,6 +199,20 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
+/// The first and the last point of a curve that the fitted recordings reach: the others have coefficients of zero. `None` for springs without
+/// a curve.
+fn reached(shape: &[(Term, Option<usize>)], best: &[f64]) -> Option<[f64; 2]> {
+    let tents = || shape.iter().filter(|(term, _)| term.is(&TENT));
+    let size = |place: &Option<usize>| place.map_or(0.0, |place| best[place].abs());
+    let largest = tents().map(|(_, place)| size(place)).fold(0.0, f64::max);
+    let mut centres = tents().filter(|(_, place)| size(place) > NOT_FITTED * largest).map(|(term, _)| term.sizes[0]);
+    let first = centres.next()?;
+    Some([first, centres.next_back().unwrap_or(first)])
+}
+
+/// The part of the largest coefficient of a curve up to which one was not fitted. Source: rounding.
+const NOT_FITTED: f64 = 1e-9;
+
 /// The torque of a spring's terms with their coefficients at an angle (N m or N).
 fn torque(terms: &[(Term, f64)], q: f64) -> f64 {
     let one = |&(term, value): &(Term, f64)| {
@@ -205,7 +221,7 @@ fn torque(terms: &[(Term, f64)], q: f64) -> f64 {
         } else if term.is(&POSITION) {
             value * q.powi(power(&term))
         } else if term.is(&TENT) {
-            value * tent_of(&term, q)
+            value * tent(q, term.sizes[0], term.sizes[1])
         } else {
             0.0
         }
@@ -223,6 +239,17 @@ mod tests {
         let effect = Effect::of(&SPRING).on("a").with("stiffness", 10.0).with("rest", 0.2);
         let columns = columns(0, &[1]);
         agree(&effect, &[(columns[0], -2.0), (columns[1], 10.0)]);
+    }
+
+    /// The curve is constant beyond the points that the recordings reach, whose coefficients are not zero.
+    #[test]
+    fn a_curve_ends_where_it_was_fitted() {
+        let tent = |k: usize| (Term::on(&TENT, 0).sized([0.1 * k as f64, 0.1]), Some(k));
+        let shape: Vec<_> = (0..5).map(tent).collect();
+        assert_eq!(reached(&shape, &[1e-15, -2.0, 0.5, 3.0, 0.0]), Some([0.1, 0.1 * 3.0]));
+        assert_eq!(reached(&shape, &[-3.0, -2.0, 0.5, 3.0, 4.0]), Some([0.0, 0.4]));
+        let straight: Vec<_> = columns(0, &[1]).into_iter().map(|term| (term, Some(0))).collect();
+        assert_eq!(reached(&straight, &[1.0]), None);
     }
 
     /// A straight spring on a joint that was recorded from −0.5 to 0.5 rad.
