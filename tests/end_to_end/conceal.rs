@@ -137,30 +137,6 @@ fn a_wrong_link_before_the_wrist_is_no_payload() {
     assert!(!names.contains(&"payload"), "{names:?}");
 }
 
-/// The centre of mass of the last link alone is 3 cm off. A payload without mass stood for it, left the link none of the error, became
-/// impossible, and nothing came back.
-#[test]
-fn a_shifted_hand_is_no_payload_without_mass() {
-    let sandbox = Sandbox::new();
-    let friction =
-        "schema = \"testbed.model/1\"\n[[effects]]\neffect = \"coulomb_friction\"\njoint = \"axis7\"\nlevel = 0.02\n";
-    sandbox.write("friction.toml", friction);
-    sandbox
-        .succeed(&words("conceal --robot seven_axis --effects friction.toml --seed 1 --friction --jobs 1 --out cases"));
-    let urdf = std::fs::read_to_string(sandbox.path("cases/case_000/robot.urdf")).expect("it was written");
-    let (true_com, stated) = ("0.012 -0.008 0.055", "0.02301 -0.00155 0.02785");
-    assert_eq!(urdf.matches(true_com).count(), 1);
-    sandbox.write("cases/case_000/robot.urdf", &urdf.replace(true_com, stated));
-    let diagnosis = diagnosed(&sandbox);
-    let findings = diagnosis["findings"].as_array().expect("there are findings");
-    let name =
-        |f: &serde_json::Value| (f["effect"].as_str().map(str::to_owned), f["joint"].as_str().map(str::to_owned));
-    let is_other = |f: &&serde_json::Value| !f["effect"].as_str().is_some_and(|name| name.contains("friction"));
-    let others: Vec<_> = findings.iter().filter(is_other).map(name).collect();
-    assert_eq!(others, [(Some("inertial_parameters".to_owned()), Some("axis7".to_owned()))]);
-    assert_eq!(diagnosis["verdict"], "explained");
-}
-
 /// A constant torque on an arm whose URDF is wrong by 20 %: the search exchanges a payload for links that explain hardly more, and the final
 /// fit drops these.
 #[test]

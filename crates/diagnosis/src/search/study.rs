@@ -29,7 +29,6 @@ mod anew;
 mod constants;
 mod formed;
 mod friction_changes;
-mod growth;
 mod linearisation_point;
 mod links;
 mod notes;

@@ -121,29 +121,13 @@ fn relinearise(study: &mut Study, judged: &mut Judged, as_given: bool) {
         }
         relinearise_once(study, judged, as_given);
         if !as_given {
-            let possible = without_impossible(study, judged.named.clone());
             let products = study.training_products();
-            let pruned = study.pruned(&products, possible);
+            let pruned = study.pruned(&products, judged.named.clone());
             judged.named = named_alone(study, pruned);
             let products = study.training_products();
             judged.members = judge::describe(&study.problem(&products), &judged.named);
         }
     }
-}
-
-/// `selected` without effects that have become impossible beside the arm that contains them, with the background that the evidence then
-/// prefers: a body without mass on the tool, which stood for a wrong last link, had left that link none.
-fn without_impossible(study: &mut Study, selected: Selection) -> Selection {
-    let products = study.training_products();
-    let problem = study.problem(&products);
-    let is_possible = |&c: &usize| problem.is_possible(c, &selected.fit);
-    let possible: Vec<usize> = selected.set.iter().copied().filter(is_possible).collect();
-    if possible.len() == selected.set.len() {
-        return selected;
-    }
-    let next = problem.choose(possible, &selected.fit.weights);
-    study.note(IMPOSSIBLE, &selected, &next);
-    study.with_best_strengths(next)
 }
 
 /// `selected` beside a background of the constants that it does not name, fitted again if it names others than before.

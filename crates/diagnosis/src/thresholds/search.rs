@@ -47,9 +47,6 @@ pub const TELLING_DRIVES: usize = 2;
 /// it, a gap that is never crossed could replace an encoder offset with a drive inertia, which have the same torque.
 /// Source: as for [`TELLING_DRIVES`].
 pub const KNOWN_DRIVE: f64 = 3.0;
-/// If the fit without an effect that has become impossible is worse by more than this (nats), the search is repeated without it. Source: a
-/// centre of mass of a hand that is wrong by 3 cm, for which a payload without mass stood (2450); its links had become exact beside it.
-pub const LOST_WITH_IMPOSSIBLE: f64 = 100.0;
 /// Springs and gaps between drive and link that are not selected are simulated again if the model's torque on their
 /// joint has changed by more than this part of its standard deviation since. Source: 111 simulated cases, in which the
 /// names are those without it; some number differs in 18.

@@ -10,17 +10,20 @@ use super::Study;
 use crate::data::motion::{Chunk, Motions};
 use crate::regression::bodies::PER_LINK;
 use crate::regression::fit::{Fit, Products};
-use crate::regression::strengths::PriorStrengths;
+use crate::regression::strengths::{Part, PriorStrengths};
 use crate::search::candidate::Candidate;
-use crate::search::problem::Selection;
+use crate::search::problem::{Growth, Selection};
 use crate::thresholds::{
-    AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, LINK_STRENGTHS, LONGEST_SHORT_LAG, MOVED, NEARLY_AS_LIKELY,
-    OWN_STRENGTHS, PER_IMITATION, SLIDING_STRENGTH,
+    AS_LIKELY_BESIDE_EXACT, BESIDE_FEW_LINKS, FEW_JOINTS, HOPELESS_EXCHANGE, LINK_STRENGTHS, LONGEST_SHORT_LAG,
+    MOST_LATER_GAIN, MOST_SELECTED, MOVED, NEARLY_AS_LIKELY, OWN_STRENGTHS, PER_IMITATION, SLIDING_STRENGTH,
 };
+
+/// The largest number of effects that may together replace a part of the background.
+const IN_PLACE: usize = 3;
 
 /// The largest number of consecutive changes of the strengths. Recomputed weights may raise a score again, so that two
 /// strengths could alternate forever.
-pub(super) const MOST_MOVES: usize = 24;
+const MOST_MOVES: usize = 24;
 
 /// The training recordings that move each joint: the first one of each group.
 pub fn moved(motions: &Motions, scales: &Scales) -> Vec<Vec<usize>> {
@@ -158,6 +161,107 @@ impl Study {
         }
     }
 
+    /// `selected` with more of the candidates `allowed`, and with the strengths of the background that the evidence prefers.
+    /// Each step takes the candidate or the change of strengths that gains more. Members that no longer pay are removed.
+    pub fn grown(&mut self, mut selected: Selection, allowed: &[usize]) -> Selection {
+        let mut products = self.training_products();
+        let mut growth = Growth::default();
+        let mut moves = 0;
+        while moves < MOST_MOVES {
+            let problem = self.problem(&products);
+            let grown = problem.grow(&selected, allowed, &mut growth);
+            self.note_tried(&selected, &std::mem::take(&mut growth.tried));
+            let mut stronger = self.strengthened(&selected, self.strengths.neighbours());
+            if grown.is_none() && stronger.is_none() {
+                let others = self.in_one_place(&selected).into_iter();
+                let others = others.chain(self.strengths.in_one_link()).collect();
+                stronger = self.strengthened(&selected, others);
+            }
+            let (rule, strengths, next) = match (grown, stronger) {
+                (Some(next), None) => ("largest gain", None, problem.reweighted(next)),
+                (Some(next), Some((_, other))) if next.score <= other.score => {
+                    ("largest gain", None, problem.reweighted(next))
+                }
+                (_, Some((strengths, other))) => ("more evidence for this background", Some(strengths), other),
+                // An effect that is a part of the background does not pay in addition to it, but may do so with a smaller
+                // background.
+                (None, None) => match self.exchanged(&selected, allowed) {
+                    Some((strengths, next)) => {
+                        let products = self.products_at(&strengths);
+                        let next = self.problem(&products).reweighted(next);
+                        ("effects in the place of the background", Some(strengths), next)
+                    }
+                    None => break,
+                },
+            };
+            if let Some(strengths) = strengths {
+                moves += 1;
+                products = self.products_at(&strengths);
+                self.strengths = strengths;
+                growth.begin_anew();
+                self.note_strengths(rule, &selected, &next);
+                selected = next;
+            } else {
+                self.note(rule, &selected, &next);
+                selected = next;
+            }
+            if selected.set.len() > MOST_SELECTED {
+                break;
+            }
+        }
+        self.pruned(&products, selected)
+    }
+
+    /// `selected` with a smaller background and a few more of the candidates `allowed`, if that is better.
+    fn exchanged(&self, selected: &Selection, allowed: &[usize]) -> Option<(PriorStrengths, Selection)> {
+        let mut best: Option<(PriorStrengths, Selection)> = None;
+        let mut hopeless: Vec<Part> = Vec::new();
+        let weaker: Vec<PriorStrengths> = self.stated.weaker(&self.strengths).collect();
+        // The strongest first: if effects cannot replace a small part of the background, they cannot replace a larger one.
+        for strengths in weaker.into_iter().rev() {
+            let part = self.strengths.part_that_differs(&strengths);
+            if hopeless.contains(&part) {
+                continue;
+            }
+            let Some(next) = self.with_few_more(&strengths, selected, allowed) else {
+                continue;
+            };
+            let beyond = next.score - selected.score;
+            if beyond > HOPELESS_EXCHANGE {
+                hopeless.push(part);
+            }
+            if beyond < -1e-6 && best.as_ref().is_none_or(|(_, best)| next.score < best.score) {
+                best = Some((strengths, next));
+            }
+        }
+        best
+    }
+
+    /// `selected` with a background of other `strengths`, and with those of the candidates `allowed` that gain most: as many as make it
+    /// better than `selected`, or a few, unless it is too far from that. `None` if a member of `selected` becomes impossible: it would be
+    /// removed later, and without it the smaller background may be far worse.
+    fn with_few_more(&self, strengths: &PriorStrengths, selected: &Selection, allowed: &[usize]) -> Option<Selection> {
+        let products = self.products_at(strengths);
+        let problem = self.problem(&products);
+        let mut next = problem.reweighted(problem.choose(selected.set.clone(), &selected.fit.weights));
+        let mut growth = Growth::default();
+        for more in (0..IN_PLACE).rev() {
+            if next.score < selected.score - 1e-6 {
+                break;
+            }
+            let Some(grown) = problem.grow(&next, allowed, &mut growth) else {
+                break;
+            };
+            let before = next.score;
+            next = problem.reweighted(grown);
+            if next.score - selected.score > MOST_LATER_GAIN * more as f64 * (before - next.score) {
+                break;
+            }
+        }
+        let stays = |&c: &usize| problem.is_possible(c, &next.fit) || !problem.is_possible(c, &selected.fit);
+        selected.set.iter().all(stays).then_some(next)
+    }
+
     /// `selected` with the strengths of the background that the evidence prefers.
     pub fn with_best_strengths(&mut self, mut selected: Selection) -> Selection {
         for _ in 0..MOST_MOVES {
@@ -252,11 +356,7 @@ impl Study {
     }
 
     /// The best of the strengths `others`, with `selected` fitted again, if they are better.
-    pub(super) fn strengthened(
-        &self,
-        selected: &Selection,
-        others: Vec<PriorStrengths>,
-    ) -> Option<(PriorStrengths, Selection)> {
+    fn strengthened(&self, selected: &Selection, others: Vec<PriorStrengths>) -> Option<(PriorStrengths, Selection)> {
         let trials: Vec<(PriorStrengths, Selection)> = others
             .into_par_iter()
             .filter(|strengths| self.stated.allows(strengths))
@@ -269,12 +369,6 @@ impl Study {
                 (strengths, next)
             })
             .filter(|(_, next)| self.has_short_lag(&next.fit))
-            // What becomes impossible beside links that differ less would be removed later.
-            .filter(|(strengths, next)| {
-                let pairs = || strengths.links.iter().zip(&self.strengths.links);
-                let are_weaker = pairs().all(|(new, old)| new <= old) && pairs().any(|(new, old)| new < old);
-                !are_weaker || self.stay_possible(selected, next)
-            })
             .collect();
         let (strengths, next) = trials.into_iter().min_by(|a, b| a.1.score.total_cmp(&b.1.score))?;
         if next.score >= selected.score - 1e-6 {
