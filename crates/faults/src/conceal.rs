@@ -4,6 +4,7 @@ use recording::Recording;
 
 use crate::campaign::CasePlan;
 use crate::error::FaultError;
+use crate::motion::{LEAD_TICKS, Reference};
 use crate::robot::Robot;
 use crate::truth::{Injected, Truth};
 
@@ -124,10 +125,9 @@ pub fn conceal_effects(
         if let ("external_contact", Some(from)) = (effect.effect.as_str(), effect.number("start")) {
             let to = from + effect.number("duration").unwrap_or(0.0);
             let recordings = || stage.training.iter().chain([&stage.held_out]);
-            let span = |run: &crate::motion::Reference| [run.time(0), run.time(run.ticks())];
+            let span = |run: &Reference| [run.time(LEAD_TICKS), run.time(run.ticks())];
             if !recordings().map(span).any(|[first, last]| first <= from && to <= last) {
-                let spans =
-                    recordings().map(span).map(|[first, last]| format!("{:.0} to {last:.0} s", first.round() + 0.0));
+                let spans = recordings().map(span).map(|[first, last]| format!("{first:.0} to {last:.0} s"));
                 let spans = spans.collect::<Vec<_>>().join(", ");
                 return fail(format!("it lasts from {from} to {to} s; let it be within one recording ({spans})"));
             }

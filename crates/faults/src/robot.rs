@@ -60,12 +60,9 @@ impl Robot {
         Ok(self)
     }
 
-    /// The robot with the inertias of its drives that its URDF states, by joint (kg m² or kg).
-    pub fn with_stated_rotor_inertias(mut self, stated: &[(String, f64)]) -> Self {
-        let of =
-            |joint: &arm::Joint| stated.iter().find(|(name, _)| *name == joint.name).map_or(0.0, |(_, rotor)| *rotor);
-        let rotors: Vec<f64> = self.arm.joints().iter().map(of).collect();
-        self.arm = self.arm.with_rotor_inertias(&rotors);
+    /// The robot with the inertias of its drives that its URDF states (kg m² or kg), one per joint.
+    pub fn with_stated_rotor_inertias(mut self, stated: &[f64]) -> Self {
+        self.arm = self.arm.with_rotor_inertias(stated);
         self
     }
 

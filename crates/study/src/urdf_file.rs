@@ -99,6 +99,16 @@ pub fn stated_drive_inertias(urdf: &str) -> anyhow::Result<Vec<(String, f64)>> {
     Ok(stated.collect())
 }
 
+/// The drive inertias that `urdf` states for the joints of `arm`, zero where it states none (kg m² or kg at the joint).
+///
+/// # Errors
+/// Those of [`stated_drive_inertias`].
+pub fn stated_rotor_inertias(urdf: &str, arm: &Arm) -> anyhow::Result<Vec<f64>> {
+    let stated = stated_drive_inertias(urdf)?;
+    let of = |name: &str| stated.iter().find(|(joint, _)| joint == name).map_or(0.0, |(_, inertia)| *inertia);
+    Ok(arm.joints().iter().map(|joint| of(&joint.name)).collect())
+}
+
 fn edited(urdf: &str, places: &Places, arm: &Arm, effects: &[Effect], remark: String) -> anyhow::Result<String> {
     Corrected::new(arm, effects)?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();

@@ -63,7 +63,7 @@ fn robot(name: &str, chain: &ChainArgs) -> anyhow::Result<Robot> {
     let text = library::serial_urdf(&file.text, &arm).with_context(doing)?;
     // A diagnosis of the case would take friction that a diagnosis wrote as known, and the simulated robot has none but what is injected.
     let text = urdf_file::with_unknown_friction(&text);
-    let stated = urdf_file::stated_drive_inertias(&text).with_context(doing)?;
+    let stated = urdf_file::stated_rotor_inertias(&text, &arm).with_context(doing)?;
     let robot = Robot::new(text, &file.path).with_context(doing)?.with_stated_rotor_inertias(&stated);
     match library::rotor_inertias(name) {
         Some(rotors) => robot.with_rotor_inertias(&rotors).with_context(doing),

@@ -48,7 +48,7 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
     let written = ChainArgs { base: raw.chain.base, tip: raw.chain.tip, lock: raw.chain.lock.into_iter().collect() };
     let chain = if flags.is_given() { flags } else { &written };
     let arm = robot.arm(&chain.options(&[])).with_context(of_robot)?;
-    let stated = urdf_file::stated_drive_inertias(&robot.text).with_context(of_robot)?;
+    let stated = urdf_file::stated_rotor_inertias(&robot.text, &arm).with_context(of_robot)?;
     let urdf = robot.path;
     let check = Check { source, folder, arm: &arm };
 
@@ -95,8 +95,7 @@ pub fn scenario(source: &Source, raw: RawScenario, flags: &ChainArgs) -> anyhow:
     };
     let mut rotor_inertia = check.not_negative("plant.rotor_inertia", raw.plant.rotor_inertia.as_ref(), 0.0)?;
     if raw.plant.rotor_inertia.is_none() {
-        let of = |name: &str| stated.iter().find(|(joint, _)| joint == name).map_or(0.0, |(_, inertia)| *inertia);
-        rotor_inertia = arm.joints().iter().map(|joint| of(&joint.name)).collect();
+        rotor_inertia = stated;
     }
     let mut viscous_friction =
         check.not_negative("plant.viscous_friction", raw.plant.viscous_friction.as_ref(), 0.0)?;
