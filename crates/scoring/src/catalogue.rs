@@ -70,6 +70,7 @@ pub fn parameters(effect: &str) -> &'static [&'static str] {
         "backlash" => &["halfgap"],
         "transmission_coupling" => &["viscous", "coulomb", "inertia"],
         "payload" => &["mass", "com_x", "com_y", "com_z"],
+        "inertial_parameters" => &["mass"],
         "link_inertial_error" => &["relative"],
         "gravity_misalignment" => &["angle"],
         "spring" => &["stiffness"],
