@@ -54,11 +54,11 @@ pub use answer::{
     Separated,
 };
 pub use calibration::{Bin, Calibration};
-pub use catalogue::BASELINE_WITH_DRIVES;
+pub use catalogue::{BASELINE_WITH_DRIVES, parameters};
 pub use controls::{HeldOut, WrongTerm, true_terms, wrong_term};
 pub use experiments::{After, Confusion, Experiments, InCase};
 pub use intervals::{Counted, quantile, wilson};
-pub use numbers::ScoredNumber;
+pub use numbers::{ScoredNumber, truth_value};
 pub use outcome::{FalseName, Fate, Outcome, OutsideOutcome};
 pub use plain::Plain;
 pub use published::{

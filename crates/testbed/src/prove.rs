@@ -6,6 +6,7 @@ mod child;
 mod command;
 mod disturbance;
 mod experiments;
+mod given;
 mod proof;
 mod published;
 mod report;

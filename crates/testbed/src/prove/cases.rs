@@ -7,7 +7,7 @@ use anyhow::{Context, bail, ensure};
 use faults::{Campaign, CasePlan, FaultError, Robot, conceal_case, write_case};
 
 use super::case_paths::CasePaths;
-use super::{disturbance, tracking};
+use super::{disturbance, given, tracking};
 use crate::cli::{ChainArgs, ProveArgs};
 use crate::conceal;
 
@@ -134,7 +134,7 @@ impl Cases {
                 let drawn = plans.iter().map(|plan| place(plan.index, &plan.name));
                 Ok(drawn.chain([place(plans.len(), disturbance::CASE)]).collect())
             }
-            Self::Given { cases, truth } => given(cases, truth),
+            Self::Given { cases, truth } => given::places(cases, truth),
         }
     }
 
@@ -195,36 +195,4 @@ impl Cases {
         }
         Ok(())
     }
-}
-
-fn given(cases: &Path, truth: &Path) -> anyhow::Result<Vec<CasePaths>> {
-    let entries = std::fs::read_dir(cases).with_context(|| format!("--cases-from {}", cases.display()))?;
-    let mut names: Vec<String> = entries
-        .flatten()
-        .filter(|entry| entry.path().is_dir())
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .filter(|name| name.starts_with("case_"))
-        .collect();
-    names.sort();
-    let all = names.len();
-    names.retain(|name| truth.join(format!("{name}.json")).is_file());
-    ensure!(
-        !names.is_empty(),
-        "{}: has no folder case_* with a ground truth in {}; give the folder of the ground truths with --truth",
-        cases.display(),
-        truth.display()
-    );
-    if names.len() < all {
-        let (left_out, truth) = (all - names.len(), truth.display());
-        crate::output::say(format_args!(
-            "note: {left_out} of {all} cases have no ground truth in {truth}; they are omitted"
-        ));
-    }
-    let place = |(number, name): (usize, String)| CasePaths {
-        number,
-        folder: cases.join(&name),
-        truth: truth.join(format!("{name}.json")),
-        name,
-    };
-    Ok(names.into_iter().enumerate().map(place).collect())
 }

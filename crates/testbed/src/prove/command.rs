@@ -20,7 +20,7 @@ use super::proof::Proof;
 use super::rows::{self, Row};
 use super::shards::{self, Label};
 use super::vault::{Vault, make_folder};
-use super::{disturbance, experiments, published, report, tracking_step, work};
+use super::{disturbance, experiments, given, published, report, tracking_step, work};
 use crate::cli::ProveArgs;
 use crate::interrupt;
 use crate::output::{self, OutputFile};
@@ -92,10 +92,7 @@ fn protocol(
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
     if let Cases::Given { .. } = source {
         // An unreadable ground truth must be reported before hours of diagnoses, not after.
-        for CasePaths { name, truth, .. } in places {
-            let text = std::fs::read_to_string(truth).with_context(|| truth.display().to_string())?;
-            rows::truth::<Truth>(name, &text).with_context(|| format!("{}: correct or remove it", truth.display()))?;
-        }
+        places.iter().try_for_each(given::check)?;
     }
     times.of("conceal", || work::all("concealing", places, jobs, |place| source.make(place)))?;
     let seal = times.of("seal", || vault.seal(places, source.describe()))?;
