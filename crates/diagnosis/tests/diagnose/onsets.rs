@@ -11,8 +11,11 @@ fn an_effect_with_an_onset_is_named_with_it() {
     let onset = 1006.0;
     let offset = |_: &Motion| 1.5;
     let spring = |m: &Motion| 4.0 * (m.q[ELBOW] - 0.3);
+    // The exponent is found by a refinement, so that no candidate with this exponent always acts.
+    let drag = |m: &Motion| 3.0 * m.qd[ELBOW] * m.qd[ELBOW].abs().powf(1.3);
     type Torque<'a> = &'a dyn Fn(&Motion) -> f64;
-    let effects: [(&str, Torque<'_>); 2] = [("torque_offset", &offset), ("spring", &spring)];
+    let effects: [(&str, Torque<'_>); 3] =
+        [("torque_offset", &offset), ("spring", &spring), ("quadratic_drag", &drag)];
     for (effect, torque) in effects {
         let injected = |motion: &mut Motion, tau: &mut [f64]| {
             baseline_friction(motion, tau);

@@ -62,6 +62,12 @@ impl Study {
         (table, products)
     }
 
+    /// A table of `terms` alone, along the same motions and arm.
+    pub fn table_of(&self, terms: Vec<Term>) -> Table {
+        let Data { motions, rigid, scales, .. } = &self.data;
+        Table::new(motions, rigid, scales, terms, &[], self.moving)
+    }
+
     /// `columns` and, after them, `more` terms fitted to the training recordings at given weights of the joints. The fit's columns are
     /// those of the background, and then the others in this order.
     pub fn fit_with(&self, columns: &[usize], more: Vec<Term>, weights: &[f64]) -> Fit {

@@ -38,14 +38,11 @@ impl Reader<'_> {
         let columns = &study.candidates[self.candidate].columns;
         let value = |column: usize| self.resampled.column(column).map(|at| self.resampled.estimate[at]);
         // Its torque if it always acted.
-        let (always, sizes): (Vec<usize>, Vec<f64>) = columns
-            .iter()
-            .filter_map(|&column| {
-                let term = table.terms[column].always();
-                let place = table.terms.iter().position(|&known| known == term)?;
-                Some((place, value(column)?))
-            })
-            .unzip();
+        let (terms, sizes): (Vec<Term>, Vec<f64>) =
+            columns.iter().filter_map(|&column| Some((table.terms[column].always(), value(column)?))).unzip();
+        // The study's table has columns of effects that always act only for some forms.
+        let always = study.table_of(terms);
+        let places: Vec<usize> = (0..sizes.len()).collect();
         let all = &self.resampled.columns;
         let model = &self.resampled.estimate[..all.len()];
         let joints: Vec<(usize, Vec<f64>, Vec<f64>, f64)> = (0..table.dof())
@@ -56,7 +53,7 @@ impl Reader<'_> {
                 let power = rows.iter().map(|&row| residual[row].powi(2)).sum::<f64>() / rows.len().max(1) as f64;
                 let evidence = fitted.evidence[joint] / fitted.count[joint];
                 let weight = 0.5 * evidence / power.max(fitted.floor[joint]).max(1e-300);
-                (joint, table.torque(joint, &always, &sizes), residual, weight)
+                (joint, always.torque(joint, &places, &sizes), residual, weight)
             })
             .collect();
         // The increase of a row's misfit (nats) if the effect also acts on it (−1), or does not (1).
