@@ -47,6 +47,10 @@ impl Machine {
         for effect in effects {
             check(effect)?;
             let spec = effect.spec();
+            if spec.has_other && effect.joint() == effect.other() {
+                let joint = effect.joint().unwrap_or_default().to_owned();
+                return Err(EffectError::OwnJoint { effect: effect.name(), joint });
+            }
             let place = JointIndices {
                 joint: match spec.scope {
                     Scope::Joint => joint_of(arm, effect, effect.joint())?,

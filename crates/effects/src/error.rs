@@ -13,6 +13,14 @@ pub enum EffectError {
         /// The arm's joints.
         known: Vec<String>,
     },
+    /// An effect between two joints that are the same one.
+    #[error("{effect}: its other joint is \"{joint}\", too; give another one")]
+    OwnJoint {
+        /// The catalogue's name of the effect.
+        effect: &'static str,
+        /// The joint's name.
+        joint: String,
+    },
     /// A parameter value that is physically impossible.
     #[error("{effect} of {joint}: {parameter} is {value}; it must be {requirement}")]
     Parameter {

@@ -230,6 +230,7 @@ fn refusal(error: &TorqueError) -> (Option<String>, String) {
             let hint = nearest(joint, known).map_or(String::new(), |near| format!("; did you mean \"{near}\"?"));
             (Some(joint.clone()), format!("{error}{hint}"))
         }
+        TorqueError::Effect(EffectError::OwnJoint { .. }) => (Some("other".to_owned()), error.to_string()),
         TorqueError::Effect(EffectError::Parameter { parameter, .. }) => {
             (Some((*parameter).to_owned()), error.to_string())
         }

@@ -14,8 +14,7 @@ fn an_effect_with_an_onset_is_named_with_it() {
     // The exponent is found by a refinement, so that no candidate with this exponent always acts.
     let drag = |m: &Motion| 3.0 * m.qd[ELBOW] * m.qd[ELBOW].abs().powf(1.3);
     type Torque<'a> = &'a dyn Fn(&Motion) -> f64;
-    let effects: [(&str, Torque<'_>); 3] =
-        [("torque_offset", &offset), ("spring", &spring), ("quadratic_drag", &drag)];
+    let effects: [(&str, Torque<'_>); 3] = [("torque_offset", &offset), ("spring", &spring), ("quadratic_drag", &drag)];
     for (effect, torque) in effects {
         let injected = |motion: &mut Motion, tau: &mut [f64]| {
             baseline_friction(motion, tau);

@@ -111,6 +111,16 @@ fn errors_name_line_and_remedy() {
             ":11: coulomb_friction of ",
         ),
         (
+            format!("effect = \"transmission_coupling\"\njoint = \"{joint}\"\nother = \"{joint}\"\nviscous = 2\n"),
+            "its other joint is",
+        ),
+        (
+            format!(
+                "effect = \"stribeck_friction\"\njoint = \"{joint}\"\ncoulomb = 2\nbreakaway = 1\nvelocity = 0.1\n"
+            ),
+            "breakaway is 1; it must be at least as large as coulomb",
+        ),
+        (
             format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\nlevle = 2\n"),
             ":10: unknown key `levle`; did you mean `level`?",
         ),
