@@ -158,3 +158,27 @@ fn an_effect_that_was_exchanged_is_tried_again_once() {
     let taken = trace.lines().filter(|line| line.contains("the effect that had taken its place is dropped")).count();
     assert_eq!(taken, 1, "{trace}");
 }
+
+/// A hand whose centre of mass is 3 cm from the URDF's: the search puts a payload in the place of this error, which no body can be in the
+/// end. The hand is named nevertheless.
+#[test]
+fn a_wrong_hand_is_named_though_a_payload_took_its_place() {
+    let sandbox = Sandbox::new();
+    let friction =
+        "schema = \"testbed.model/1\"\n[[effects]]\neffect = \"coulomb_friction\"\njoint = \"axis7\"\nlevel = 0.02\n";
+    sandbox.write("friction.toml", friction);
+    sandbox.succeed(&words("conceal --robot seven_axis --effects friction.toml --seed 1 --friction --out cases"));
+    let urdf = std::fs::read_to_string(sandbox.path("cases/case_000/robot.urdf")).expect("it was written");
+    let moved = urdf.replace("\"0.012 -0.008 0.055\"", "\"0.02301 -0.00155 0.02785\"");
+    assert_ne!(moved, urdf, "the hand has another centre of mass");
+    sandbox.write("cases/case_000/robot.urdf", &moved);
+    let found = diagnosed(&sandbox);
+    let findings = found["findings"].as_array().expect("a list");
+    let friction = ["coulomb_friction", "viscous_friction"];
+    let special: Vec<(&str, Option<&str>)> = findings
+        .iter()
+        .map(|finding| (finding["effect"].as_str().unwrap_or_default(), finding["joint"].as_str()))
+        .filter(|(effect, _)| !friction.contains(effect))
+        .collect();
+    assert_eq!(special, [("inertial_parameters", Some("axis7"))], "{found}");
+}

@@ -152,6 +152,18 @@ fn a_truth_that_cannot_be_read_is_reported_before_anything_is_diagnosed() {
 }
 
 #[test]
+fn a_truth_that_cannot_be_right_is_reported_before_anything_is_diagnosed() {
+    let sandbox = cases();
+    let mut truth = sandbox.json("given/truth/case_b.json");
+    truth["concealed"][0]["joint"] = "elbov".into();
+    sandbox.write("given/truth/case_b.json", &truth.to_string());
+    let refused = sandbox.refuse(&COMMAND);
+    let says = ["case_b.json", "entry 1 of \"concealed\"", "the URDF has no joint \"elbov\""];
+    assert!(says.iter().all(|part| refused.contains(part)), "{refused}");
+    assert_eq!(sandbox.list("proof/diagnoses"), [""; 0]);
+}
+
+#[test]
 fn a_folder_begun_for_another_campaign_is_refused() {
     let sandbox = cases();
     sandbox.succeed(&COMMAND);

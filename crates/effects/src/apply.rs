@@ -47,10 +47,6 @@ impl Machine {
         for effect in effects {
             check(effect)?;
             let spec = effect.spec();
-            if spec.has_other && effect.joint() == effect.other() {
-                let joint = effect.joint().unwrap_or_default().to_owned();
-                return Err(EffectError::OwnJoint { effect: effect.name(), joint });
-            }
             let place = JointIndices {
                 joint: match spec.scope {
                     Scope::Joint => joint_of(arm, effect, effect.joint())?,
@@ -58,6 +54,10 @@ impl Machine {
                 },
                 other: if spec.has_other { joint_of(arm, effect, effect.other())? } else { 0 },
             };
+            if spec.has_other && place.joint == place.other {
+                let joint = effect.joint().unwrap_or_default().to_owned();
+                return Err(EffectError::OwnJoint { effect: effect.name(), joint });
+            }
             (spec.apply)(effect, place, &mut machine);
         }
         Ok(machine)

@@ -14,7 +14,7 @@ pub enum EffectError {
         known: Vec<String>,
     },
     /// An effect between two joints that are the same one.
-    #[error("{effect}: its other joint is \"{joint}\", too; give another one")]
+    #[error("{effect} of {joint}: \"other\" is the same joint; give another one")]
     OwnJoint {
         /// The catalogue's name of the effect.
         effect: &'static str,

@@ -15,6 +15,7 @@ use crate::inputs::{self, Opened, Recordings, Role};
 use crate::notes::Notes;
 use crate::placeholders::{Replaced, replaced};
 use crate::robot::{self, RobotFile};
+use crate::urdf_file::may_count_twice;
 use crate::urdf_friction::{UrdfFriction, known_friction};
 
 /// Effects that the model is known to omit.
@@ -91,9 +92,10 @@ impl Request {
         let opened = Opened::new(&self.recordings)?;
         let arm = self.arm(&robot, opened.joints(), listener)?;
         let mut known = self.known(&arm)?;
+        let twice = may_count_twice(&robot.text, &known);
         let (friction, remark) = known_friction(&robot, &arm, self.urdf_friction, &known)?;
         known.splice(0..0, friction);
-        let mut remarks = vec![remark];
+        let mut remarks = vec![remark, twice];
         let mut checked = arm.clone();
         if self.urdf_accuracy != Some(0.0)
             && let Some(Replaced { arm, effects, remark }) = replaced(&arm, &known)

@@ -4,13 +4,14 @@ mod scan;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use anyhow::Context;
 use arm::{Arm, Inertia};
-use effects::Effect;
 use effects::arm::{INERTIAL_PARAMETERS, INERTIAL_SCALE, LINK_INERTIAL_ERROR, PAYLOAD, payload_body};
 use effects::drive::ROTOR_INERTIA;
+use effects::{Effect, InUrdf};
 use torque::Corrected;
 
 use self::scan::{ElementSpan, JointPlaces, LinkPlaces, Places};
@@ -21,6 +22,23 @@ use validate::nearest_body;
 const SOURCE: (&str, &str) = ("source", "testbed");
 /// The XML name space of Drake's extensions of URDF.
 const DRAKE: &str = "xmlns:drake=\"http://drake.mit.edu\"";
+
+/// The first words of the comment in a corrected URDF.
+pub const CORRECTED: &str = "Corrected by testbed diagnose";
+
+/// What to check if a corrected URDF is diagnosed with `known` effects that its inertials can hold; `None` if nothing may count twice.
+pub fn may_count_twice(urdf: &str, known: &[Effect]) -> Option<String> {
+    let is_held =
+        |effect: &&Effect| effect.spec().in_urdf == InUrdf::Inertials && held::in_common(effect) == Held::Whole;
+    let names: BTreeSet<&str> = known.iter().filter(is_held).map(Effect::name).collect();
+    (urdf.contains(CORRECTED) && !names.is_empty()).then(|| {
+        let names = Vec::from_iter(names).join(", ");
+        format!(
+            "this URDF was corrected by a diagnosis; if that put {names} into it, they count twice: give the URDF from before the correction, \
+             or leave them out of --known"
+        )
+    })
+}
 
 /// The text `urdf` of `arm` with those of `effects` that it can hold: inertials, friction as `<dynamics damping friction>` in
 /// place of the previous one, and drive inertias as Drake's `<drake:rotor_inertia>` (with a gear ratio of 1, because they are
@@ -50,7 +68,7 @@ pub fn corrected_urdf(urdf: &str, arm: &Arm, effects: &[Effect]) -> anyhow::Resu
             ));
         }
     }
-    let mut lines = vec![format!("Corrected by testbed diagnose: {whole} of {} effects are in it.", effects.len())];
+    let mut lines = vec![format!("{CORRECTED}: {whole} of {} effects are in it.", effects.len())];
     if !omitted.is_empty() {
         lines.push("Not in it (the TOML file of the corrected model has all effects):".into());
         lines.extend(omitted.iter().map(|line| format!("  {line}")));

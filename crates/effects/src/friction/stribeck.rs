@@ -55,11 +55,6 @@ pub static STRIBECK_FRICTION: Spec = Spec {
         let effect = effect.with("coulomb", coulomb).with("breakaway", breakaway);
         Some(effect.with("velocity", velocity).with("exponent", exponent))
     },
-    refuse: |effect| {
-        let breakaway = effect.number("breakaway");
-        let rises = breakaway < effect.number("coulomb");
-        rises.then_some(("breakaway", breakaway, "at least as large as coulomb"))
-    },
     // If another dry friction of the joint states the Coulomb level, this one states only the additional breakaway
     // friction.
     own_sentence: |effect| {

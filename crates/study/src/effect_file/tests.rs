@@ -112,13 +112,7 @@ fn errors_name_line_and_remedy() {
         ),
         (
             format!("effect = \"transmission_coupling\"\njoint = \"{joint}\"\nother = \"{joint}\"\nviscous = 2\n"),
-            "its other joint is",
-        ),
-        (
-            format!(
-                "effect = \"stribeck_friction\"\njoint = \"{joint}\"\ncoulomb = 2\nbreakaway = 1\nvelocity = 0.1\n"
-            ),
-            "breakaway is 1; it must be at least as large as coulomb",
+            ":9: transmission_coupling of",
         ),
         (
             format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\nlevle = 2\n"),

@@ -204,3 +204,13 @@ fn a_payload_that_leaves_no_body_is_written_as_the_nearest_one() {
     assert!((tool.mass - 0.3).abs() < 1e-12, "{tool:?}");
     assert!(!nearest_body(tool).1, "{tool:?}");
 }
+
+#[test]
+fn known_bodies_that_a_corrected_urdf_may_hold_are_noted() {
+    let arm = read(TWO);
+    let corrected = corrected_urdf(TWO, &arm, &effects()).expect("it can be corrected").text;
+    let note = may_count_twice(&corrected, &effects()).expect("the payload may count twice");
+    assert!(note.contains("put inertial_scale, link_inertial_error, payload into it"), "{note}");
+    assert_eq!(may_count_twice(TWO, &effects()), None);
+    assert_eq!(may_count_twice(&corrected, &effects()[..2]), None);
+}

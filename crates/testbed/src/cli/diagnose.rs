@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use study::inputs::{Given, Recordings};
+use study::urdf_file::CORRECTED;
 use study::{Known, Request};
 
 use super::chain::ChainArgs;
@@ -204,8 +205,7 @@ impl DiagnoseArgs {
                 .map(|file| file.marked(residuals_mark(file.path))),
             given("--model", self.model.as_deref(), &["toml"])
                 .map(|file| file.marked("# Effects that the URDF omits; testbed diagnose reads them")),
-            given("--urdf", self.urdf.as_deref(), &["urdf", "xml"])
-                .map(|file| file.marked("Corrected by testbed diagnose")),
+            given("--urdf", self.urdf.as_deref(), &["urdf", "xml"]).map(|file| file.marked(CORRECTED)),
             given("--trace", self.trace.as_deref(), &["csv"]).map(|file| file.marked("step,action,effect,")),
             given("--mjcf", self.mjcf.as_deref(), &["xml", "mjcf"])
                 .map(|file| file.marked("Written by testbed diagnose")),

@@ -91,7 +91,7 @@ fn protocol(
     times: &mut Times,
 ) -> anyhow::Result<(Seal, Vec<Row>)> {
     if let Cases::Given { .. } = source {
-        // An unreadable ground truth must be reported before hours of diagnoses, not after.
+        // An unreadable or a wrong ground truth must be reported before hours of diagnoses, not after.
         places.iter().try_for_each(given::check)?;
     }
     times.of("conceal", || work::all("concealing", places, jobs, |place| source.make(place)))?;

@@ -46,8 +46,8 @@ pub fn places(cases: &Path, truth: &Path) -> anyhow::Result<Vec<CasePaths>> {
     Ok(names.into_iter().enumerate().map(place).collect())
 }
 
-/// Checks a ground truth before hours of diagnoses: an effect or a joint that does not exist would count as missed, and a size that
-/// is not stated would be omitted from the scores.
+/// Checks a ground truth before hours of diagnoses: an effect or a joint that does not exist would count as missed, and a main size that
+/// is not stated as right.
 ///
 /// # Errors
 /// With the file, the effect and the remedy.
@@ -57,22 +57,23 @@ pub fn check(place: &CasePaths) -> anyhow::Result<()> {
     let truth: Truth = rows::truth(&place.name, &text).with_context(|| format!("{file}: correct or remove it"))?;
     let arm = Arm::from_urdf(place.folder.join(Files::of(&place.folder)?.robot))?;
     let joints: Vec<String> = arm.joints().iter().map(|joint| joint.name.clone()).collect();
+    // Recordings may be of a part of the URDF's joints.
     ensure!(
-        truth.torque_noise.len() == joints.len(),
-        "{file}: torque_noise has {} values, and the URDF of {} has {} joints; give one per joint, base to tip",
+        (1..=joints.len()).contains(&truth.torque_noise.len()),
+        "{file}: torque_noise has {} values, and the URDF of {} has {} joints; give one per recorded joint, base to tip",
         truth.torque_noise.len(),
         place.name,
         joints.len()
     );
     for (number, injected) in truth.injected.iter().enumerate() {
-        check_effect(injected, &joints).with_context(|| format!("{file}: number {} of \"concealed\"", number + 1))?;
+        check_effect(injected, &joints).with_context(|| format!("{file}: entry {} of \"concealed\"", number + 1))?;
     }
     Ok(())
 }
 
 fn check_effect(injected: &Injected, joints: &[String]) -> anyhow::Result<()> {
     let name = injected.name();
-    let is_joint = |joint: &String| -> anyhow::Result<()> {
+    let check_joint = |joint: &String| -> anyhow::Result<()> {
         if joints.contains(joint) {
             return Ok(());
         }
@@ -80,7 +81,7 @@ fn check_effect(injected: &Injected, joints: &[String]) -> anyhow::Result<()> {
         bail!("{name}: the URDF has no joint \"{joint}\"; {hint}it has {}", joints.join(", "))
     };
     if let Some(joint) = &injected.joint {
-        is_joint(joint)?;
+        check_joint(joint)?;
     }
     if injected.is_outside_the_catalogue() {
         return Ok(());
@@ -94,22 +95,34 @@ fn check_effect(injected: &Injected, joints: &[String]) -> anyhow::Result<()> {
         )
     };
     match (spec.scope, &injected.joint) {
-        (effects::Scope::Joint, None) => bail!("{name} is on a joint; add \"joint\""),
+        // Inertial parameters may be those of all links.
+        (effects::Scope::Joint, None) if spec.in_urdf != effects::InUrdf::Inertials => {
+            bail!("{name} acts on a joint; give one as \"joint\": {}", joints.join(", "))
+        }
         (effects::Scope::Arm, Some(joint)) => {
-            bail!("{name} is on the whole arm and not on {joint}; write \"joint\": null")
+            bail!("{name} acts on the whole arm and not on {joint}; write \"joint\": null")
         }
         _ => {}
     }
-    if let Some(serde_json::Value::String(other)) = injected.parameters.get("other") {
-        is_joint(other)?;
+    if spec.has_other {
+        let Some(serde_json::Value::String(other)) = injected.parameters.get("other") else {
+            bail!("{name} has another joint; give it as \"other\": \"NAME\"")
+        };
+        check_joint(other)?;
+        let place = |name: &String| joints.iter().position(|joint| joint == name);
+        ensure!(
+            place(other) < injected.joint.as_ref().and_then(place),
+            "{name}: \"other\" is {other}; a coupling is stated on the joint that is farther from the base, and \"other\" is the nearer one"
+        );
     }
-    // Another form may have other parameters.
+    // Another form may have other parameters, and a coupling need not have all of its own.
     let sizes = parameters(name);
-    let is_stated = sizes.iter().any(|size| truth_value(injected, size).is_some());
+    let wanted = if spec.has_other { sizes } else { &sizes[..sizes.len().min(1)] };
+    let is_stated = wanted.is_empty() || wanted.iter().any(|size| truth_value(injected, size).is_some());
     ensure!(
-        injected.form.is_some() || sizes.is_empty() || is_stated,
+        injected.form.is_some() || injected.joint.is_none() && spec.scope == effects::Scope::Joint || is_stated,
         "{name} has no size; state {}",
-        sizes.join(" or ")
+        wanted.join(" or ")
     );
     Ok(())
 }
@@ -133,15 +146,22 @@ mod tests {
             r#"{"effect": "dead_band_unknown", "joint": "elbow", "width": 0.1}"#,
             r#"{"effect": "link_mass_error", "joint": "elbow", "relative": 0.1}"#,
             r#"{"effect": "link_inertial_error", "joint": "elbow", "form": "turned"}"#,
+            r#"{"effect": "inertial_parameters", "joint": null}"#,
         ] {
             assert_eq!(checked(right), "ok", "{right}");
         }
         for (wrong, says) in [
             (r#"{"effect": "torque_ofset", "joint": "elbow", "offset": 0.1}"#, "did you mean \"torque_offset\"?"),
             (r#"{"effect": "torque_offset", "joint": "elbov", "offset": 0.1}"#, "did you mean \"elbow\"?"),
-            (r#"{"effect": "torque_offset", "joint": null, "offset": 0.1}"#, "is on a joint"),
-            (r#"{"effect": "payload", "joint": "elbow", "mass": 0.1}"#, "is on the whole arm"),
+            (r#"{"effect": "torque_offset", "joint": null, "offset": 0.1}"#, "acts on a joint"),
+            (r#"{"effect": "payload", "joint": "elbow", "mass": 0.1}"#, "acts on the whole arm"),
             (r#"{"effect": "torque_offset", "joint": "elbow"}"#, "state offset"),
+            (r#"{"effect": "payload", "joint": null, "com": [0, 0, 0.1]}"#, "state mass"),
+            (r#"{"effect": "transmission_coupling", "joint": "elbow", "coulomb": 0.1}"#, "has another joint"),
+            (
+                r#"{"effect": "transmission_coupling", "joint": "shoulder", "other": "elbow", "coulomb": 0.1}"#,
+                "farther from the base",
+            ),
             (r#"{"effect": "torque_offset", "joint": "elbow", "offset": "much"}"#, "state offset"),
             (
                 r#"{"effect": "transmission_coupling", "joint": "elbow", "other": "wrist", "coulomb": 0.1}"#,

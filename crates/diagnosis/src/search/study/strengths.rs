@@ -167,6 +167,7 @@ impl Study {
         let mut products = self.training_products();
         let mut growth = Growth::default();
         let mut moves = 0;
+        let mut before_payload: Option<(PriorStrengths, Selection)> = None;
         while moves < MOST_MOVES {
             let problem = self.problem(&products);
             let grown = problem.grow(&selected, allowed, &mut growth);
@@ -189,6 +190,10 @@ impl Study {
                     Some((strengths, next)) => {
                         let products = self.products_at(&strengths);
                         let next = self.problem(&products).reweighted(next);
+                        let is_new = |c: &usize| self.is_payload(*c) && !selected.set.contains(c);
+                        if next.set.iter().any(is_new) {
+                            before_payload = Some((self.strengths.clone(), selected.clone()));
+                        }
                         ("effects in the place of the background", Some(strengths), next)
                     }
                     None => break,
@@ -208,6 +213,19 @@ impl Study {
             if selected.set.len() > MOST_SELECTED {
                 break;
             }
+        }
+        // A payload in the place of the last link's error may need parameters that no body has, once the background is smaller still.
+        // Without the payload, nothing would stand for that error.
+        let problem = self.problem(&products);
+        let is_impossible = |c: &usize| self.is_payload(*c) && !problem.is_possible(*c, &selected.fit);
+        if let Some((strengths, before)) = before_payload
+            && selected.set.iter().any(|c| !before.set.contains(c) && is_impossible(c))
+            && problem.prune(selected.clone()).score > before.score
+        {
+            self.strengths = strengths;
+            self.note_strengths("a payload in the place of the background is not physical", &selected, &before);
+            products = self.training_products();
+            selected = before;
         }
         self.pruned(&products, selected)
     }

@@ -40,7 +40,7 @@ impl Reader<'_> {
         // Its torque if it always acted.
         let (terms, sizes): (Vec<Term>, Vec<f64>) =
             columns.iter().filter_map(|&column| Some((table.terms[column].always(), value(column)?))).unzip();
-        // The study's table has columns of effects that always act only for some forms.
+        // The study's table has such columns for some forms only.
         let always = study.table_of(terms);
         let places: Vec<usize> = (0..sizes.len()).collect();
         let all = &self.resampled.columns;
