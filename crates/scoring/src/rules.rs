@@ -120,7 +120,7 @@ pub fn found_or_confusable(answer: &Answer) -> BTreeSet<Name> {
 /// joint, if it is on the whole arm) that is not named separately. If the URDF is wrong everywhere, the parameters of such
 /// a link differ in other ways as well, and `inertial_parameters` is a baseline effect. If the URDF is exact, the name is
 /// right for a link whose parameters differ in other ways, and false otherwise. On the whole arm, it is also counted as a
-/// common factor of all inertials that is not larger than the URDF's error.
+/// common factor of all inertials that is not larger than the URDF's error. Injected by its own name, it is counted by that name.
 pub fn counted_findings(truth: &Truth, answer: &Answer) -> Answer {
     counted(truth, answer, true)
 }
@@ -138,6 +138,11 @@ fn counted(truth: &Truth, answer: &Answer, factor_too: bool) -> Answer {
     let wrong_everywhere = truth.has_a_wrong_urdf();
     let mut taken: BTreeSet<Name> = BTreeSet::new();
     for finding in general {
+        let is_it = |injected: &Injected| injected.name() == INERTIALS && injected.joint == finding.joint;
+        if truth.of_note().any(is_it) {
+            findings.push(finding);
+            continue;
+        }
         let is_meant = |injected: &&Injected| match injected.name() {
             LINK_INERTIAL => {
                 (wrong_everywhere || injected.form.is_some())

@@ -224,7 +224,11 @@ fn inertials_count_as_a_wrong_link() {
     let link = || json!([{"effect": "link_inertial_error", "joint": "a", "relative": 0.3, "expressed_share": 0.1}]);
     let arm = json!({"effect": "inertial_parameters", "joint": null, "share": 0.2, "probability": 0.9});
     let on = |joint: &str| json!([finding("inertial_parameters", joint, json!([]))]);
+    let own = || json!([{"effect": "inertial_parameters", "joint": "a", "mass": 2.0, "expressed_share": 0.1}]);
     for (injected, sigma, findings, found, false_names) in [
+        (own(), 0.1, on("a"), 1, 0),
+        (own(), 0.0, on("a"), 1, 0),
+        (own(), 0.0, on("b"), 0, 1),
         (link(), 0.1, on("a"), 1, 0),
         (link(), 0.1, json!([arm]), 1, 0),
         (link(), 0.1, on("b"), 0, 0),

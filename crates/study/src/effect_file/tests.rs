@@ -112,7 +112,7 @@ fn errors_name_line_and_remedy() {
         ),
         (
             format!("effect = \"transmission_coupling\"\njoint = \"{joint}\"\nother = \"{joint}\"\nviscous = 2\n"),
-            ":9: transmission_coupling of",
+            ":10: transmission_coupling of",
         ),
         (
             format!("effect = \"coulomb_friction\"\njoint = \"{joint}\"\nlevle = 2\n"),
