@@ -155,7 +155,7 @@ fn a_truth_that_cannot_be_read_is_reported_before_anything_is_diagnosed() {
 fn a_truth_that_cannot_be_right_is_reported_before_anything_is_diagnosed() {
     let sandbox = cases();
     let mut truth = sandbox.json("given/truth/case_b.json");
-    truth["concealed"][0]["joint"] = "elbov".into();
+    truth["concealed"] = serde_json::json!([{"effect": "torque_offset", "joint": "elbov", "offset": 1.0}]);
     sandbox.write("given/truth/case_b.json", &truth.to_string());
     let refused = sandbox.refuse(&COMMAND);
     let says = ["case_b.json", "entry 1 of \"concealed\"", "the URDF has no joint \"elbov\""];
