@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail, ensure};
 use arm::Arm;
+use effects::arm::INERTIAL_PARAMETERS;
 use recording::nearest;
 use scoring::{Injected, Truth, parameters, truth_value};
 
@@ -94,9 +95,10 @@ fn check_effect(injected: &Injected, joints: &[String]) -> anyhow::Result<()> {
             known.join(", ")
         )
     };
+    // Inertial parameters without a joint are those of all links, and have no size.
+    let is_of_all_links = injected.joint.is_none() && spec.name == INERTIAL_PARAMETERS.name;
     match (spec.scope, &injected.joint) {
-        // Inertial parameters may be those of all links.
-        (effects::Scope::Joint, None) if spec.in_urdf != effects::InUrdf::Inertials => {
+        (effects::Scope::Joint, None) if !is_of_all_links => {
             bail!("{name} acts on a joint; give one as \"joint\": {}", joints.join(", "))
         }
         (effects::Scope::Arm, Some(joint)) => {
@@ -120,7 +122,7 @@ fn check_effect(injected: &Injected, joints: &[String]) -> anyhow::Result<()> {
     let wanted = if spec.has_other { sizes } else { &sizes[..sizes.len().min(1)] };
     let is_stated = wanted.is_empty() || wanted.iter().any(|size| truth_value(injected, size).is_some());
     ensure!(
-        injected.form.is_some() || injected.joint.is_none() && spec.scope == effects::Scope::Joint || is_stated,
+        injected.form.is_some() || is_of_all_links || is_stated,
         "{name} has no size; state {}",
         wanted.join(" or ")
     );
@@ -154,6 +156,7 @@ mod tests {
             (r#"{"effect": "torque_ofset", "joint": "elbow", "offset": 0.1}"#, "did you mean \"torque_offset\"?"),
             (r#"{"effect": "torque_offset", "joint": "elbov", "offset": 0.1}"#, "did you mean \"elbow\"?"),
             (r#"{"effect": "torque_offset", "joint": null, "offset": 0.1}"#, "acts on a joint"),
+            (r#"{"effect": "link_inertial_error", "joint": null, "relative": 0.1}"#, "acts on a joint"),
             (r#"{"effect": "payload", "joint": "elbow", "mass": 0.1}"#, "acts on the whole arm"),
             (r#"{"effect": "torque_offset", "joint": "elbow"}"#, "state offset"),
             (r#"{"effect": "payload", "joint": null, "com": [0, 0, 0.1]}"#, "state mass"),
