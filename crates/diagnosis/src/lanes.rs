@@ -1,6 +1,8 @@
 //! Inner products of several columns at a time, in the lanes of the processor's vectors. Each product has the same bits as
 //! if it were computed alone.
 
+use std::ops::Range;
+
 use gp::{Wide, on_widest};
 
 /// The number of columns that are treated together.
@@ -131,6 +133,42 @@ impl Wide for DotsWith<'_> {
         }
         products.extend(alone.iter().map(|other| dot(a, other)));
         products
+    }
+}
+
+/// The number of partial sums of an inner product of long vectors.
+const LONG_PARTS: usize = 16;
+
+/// The inner product of two signals over runs of rows.
+pub fn dot_over(runs: &[Range<usize>], a: &[f64], b: &[f64]) -> f64 {
+    on_widest(DotOver { runs, a, b })
+}
+
+struct DotOver<'a> {
+    runs: &'a [Range<usize>],
+    a: &'a [f64],
+    b: &'a [f64],
+}
+
+impl Wide for DotOver<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> f64 {
+        let mut sums = [0.0; LONG_PARTS];
+        for run in self.runs {
+            let (x, y) = (self.a[run.clone()].chunks_exact(LONG_PARTS), self.b[run.clone()].chunks_exact(LONG_PARTS));
+            // Runs may be short: no addition waits for another one of the same run.
+            for (sum, (x, y)) in sums.iter_mut().zip(x.remainder().iter().zip(y.remainder())) {
+                *sum += x * y;
+            }
+            for (x, y) in x.zip(y) {
+                for part in 0..LONG_PARTS {
+                    sums[part] += x[part] * y[part];
+                }
+            }
+        }
+        sums.iter().sum()
     }
 }
 

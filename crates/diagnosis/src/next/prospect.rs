@@ -150,7 +150,8 @@ impl<'a> Prospect<'a> {
             begins: data.motions.begins,
             remarks: Vec::new(),
         };
-        let terms = self.bare.terms.clone();
+        // The products of all of them are needed.
+        let terms = (self.bare.terms.len(), self.bare.terms.clone());
         let table = Table::new(&motions, &[rigid], &data.scales, terms, &self.point.carried, Moving::ThroughReversals);
         let seconds_of_all: Vec<f64> = data.seconds.iter().copied().chain([seconds]).collect();
         let new = Products::new(&table, |_| true, &seconds_of_all, &tempo, &data.floor);

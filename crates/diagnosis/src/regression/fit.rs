@@ -326,7 +326,7 @@ impl Products {
 fn sums(table: &Table, recordings: &[usize], known: Vec<Gram>) -> Vec<Gram> {
     let sum = |(this, known): (&JointTable, Gram)| {
         let selected = this.stretches.iter().filter(|stretch| recordings.contains(&stretch.recording));
-        Gram::sum(known, this.x.len(), selected.map(|stretch| &stretch.gram))
+        Gram::sum(known, this.x.len(), selected.map(|stretch| Arc::clone(&stretch.gram)).collect())
     };
     table.joints.iter().zip(known).map(sum).collect()
 }

@@ -16,8 +16,10 @@ use crate::regression::columns::{link_side, link_side_torque, values};
 use crate::thresholds::{CORE, REVERSAL, YIELDING};
 
 mod gram;
+mod stretch;
 
-pub use gram::{Gram, Stretch};
+pub use gram::{Gram, SharedColumn};
+pub use stretch::Stretch;
 
 /// The number of terms that are evaluated at a time; simulations for them are stored until then.
 const BATCH: usize = 12;
@@ -32,12 +34,12 @@ pub enum Moving {
 }
 
 /// One joint's target and columns on the rows, through the second filter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct JointTable {
     /// Measured minus rigid torque (N m or N).
     pub y: Vec<f64>,
     /// The columns that act on this joint.
-    pub x: Vec<Vec<f64>>,
+    pub x: Vec<SharedColumn>,
     /// Whether the joint moves: rows at rest are not fitted.
     pub moving: Vec<bool>,
     /// The recordings that move the joint; if there is only one, its stretches.
@@ -51,6 +53,8 @@ pub struct JointTable {
 pub struct Table {
     /// All terms.
     pub terms: Vec<Term>,
+    /// The number of terms of the background, which are the first ones.
+    background: usize,
     /// The index of a term among a joint's columns: `[joint][term]`.
     pub place: Vec<Vec<Option<usize>>>,
     /// The tables of the joints, one each.
@@ -70,12 +74,12 @@ pub struct Table {
 impl Table {
     /// Evaluates `terms` along `motions` for the arm of `rigid` (one per chunk). The part that this arm already contains of the
     /// terms in `carried`, with their coefficients, is added to y again: a Gauss-Newton step about it. `moving` selects the
-    /// rows that are fitted.
+    /// rows that are fitted. The first `background` terms are those of the background.
     pub fn new(
         motions: &Motions,
         rigid: &[Rigid],
         scales: &Scales,
-        terms: Vec<Term>,
+        (background, terms): (usize, Vec<Term>),
         carried: &[(Term, f64)],
         moving: Moving,
     ) -> Self {
@@ -109,16 +113,11 @@ impl Table {
                     y.extend(chunk.filter(&difference));
                     let core = (CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
                     let rest = scales.rest[joint];
-                    // A joint that is only deflected a little does not count as moving.
-                    let (low, high) = chunk.q[joint]
-                        .iter()
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| (low.min(q), high.max(q)));
-                    let yields = high - low < YIELDING * scales.range[joint];
-                    let is_dead = scales.torque[joint] == 0.0;
+                    let rests = rests(joint, chunk, scales);
                     moves.extend((0..chunk.rows()).map(|row| {
                         let tick = chunk.tick_of(row);
                         let qd = &chunk.qd[joint];
-                        if yields || is_dead {
+                        if rests {
                             return false;
                         }
                         let window = &qd[tick.saturating_sub(core)..(tick + core + 1).min(qd.len())];
@@ -136,6 +135,7 @@ impl Table {
             })
             .collect();
         let mut table = Self {
+            background,
             place: vec![Vec::new(); motions.dof],
             joints,
             rows,
@@ -154,16 +154,9 @@ impl Table {
             let terms = terms.iter().enumerate();
             terms.map(|(k, term)| acts(term).then_some(k)).collect()
         };
-        let none = || JointTable {
-            y: Vec::new(),
-            x: Vec::new(),
-            moving: Vec::new(),
-            stretches: Vec::new(),
-            count: Vec::new(),
-        };
         Self {
             place: (0..dof).map(place).collect(),
-            joints: (0..dof).map(|_| none()).collect(),
+            joints: vec![JointTable::default(); dof],
             terms,
             ..Self::default()
         }
@@ -176,11 +169,11 @@ impl Table {
         motions: &Motions,
         rigid: &[Rigid],
         scales: &Scales,
-        terms: Vec<Term>,
+        (background, terms): (usize, Vec<Term>),
         carried: &[(Term, f64)],
         moving: Moving,
     ) -> Self {
-        let mut table = Self::new(motions, rigid, scales, Vec::new(), carried, moving);
+        let mut table = Self::new(motions, rigid, scales, (background, Vec::new()), carried, moving);
         table.add(motions, rigid, scales, terms, Some(self));
         table
     }
@@ -194,16 +187,22 @@ impl Table {
         }
     }
 
-    /// This table with the `columns` of another one along the same motions and arm.
+    /// This table, which has no columns yet, with the `columns` of another one along the same motions and arm, those of the background first.
     pub fn with_columns_of(mut self, other: &Self, columns: &[usize]) -> Self {
-        for (joint, table) in self.joints.iter_mut().enumerate() {
+        self.background = columns.iter().take_while(|column| **column < other.background).count();
+        for (joint, (table, place)) in self.joints.iter_mut().zip(&mut self.place).enumerate() {
+            let known = &other.joints[joint];
+            let mut places = Vec::with_capacity(columns.len());
             for &column in columns {
-                let place = other.place[joint][column].map(|place| {
-                    table.x.push(other.joints[joint].x[place].clone());
-                    table.x.len() - 1
-                });
-                self.place[joint].push(place);
+                let taken = other.place[joint][column];
+                place.push(taken.map(|_| places.len()));
+                places.extend(taken);
             }
+            let is_of_background = of_background(place, places.len(), self.background);
+            for (stretch, known) in table.stretches.iter_mut().zip(&known.stretches) {
+                stretch.take(known, &places, &is_of_background);
+            }
+            table.x = places.iter().map(|&place| Arc::clone(&known.x[place])).collect();
         }
         self.refresh();
         self.terms.extend(columns.iter().map(|&column| other.terms[column]));
@@ -240,22 +239,25 @@ impl Table {
 
     fn refresh(&mut self) {
         self.identity = Arc::default();
-        self.joints.par_iter_mut().for_each(|table| {
+        let background = self.background;
+        self.joints.par_iter_mut().zip(&self.place).for_each(|(table, place)| {
+            let is_of_background = of_background(place, table.x.len(), background);
             for stretch in &mut table.stretches {
-                stretch.refresh(&table.x, &table.y);
+                stretch.refresh(&table.x, &table.y, &is_of_background);
             }
         });
     }
 
-    /// Takes those of the `known` columns that have `copies` among the first terms of this table, which has no columns yet.
+    /// Takes those of the `known` columns that have `copies` among this table's first terms; it has no columns yet.
     fn take(&mut self, mut known: Table, copies: &[Option<usize>]) {
         for (joint, (table, place)) in self.joints.iter_mut().zip(&mut self.place).enumerate() {
             let old = &mut known.joints[joint];
             let taken = copies.iter().enumerate();
             let taken = taken.filter_map(|(term, &copy)| Some((term, known.place[joint][copy?]?)));
             let (terms, places): (Vec<usize>, Vec<usize>) = taken.unzip();
+            let is_of_background: Vec<bool> = terms.iter().map(|&term| term < self.background).collect();
             for (stretch, known) in table.stretches.iter_mut().zip(&old.stretches) {
-                stretch.take(known, &places);
+                stretch.take(known, &places, &is_of_background);
             }
             table.x = places.iter().map(|&column| std::mem::take(&mut old.x[column])).collect();
             terms.into_iter().enumerate().for_each(|(column, term)| place[term] = Some(column));
@@ -300,7 +302,7 @@ impl Table {
                 let known = Term::about(&INERTIAL_PARAMETER, link).of(parameter);
                 let place = terms.iter().position(|&term| term == known);
                 let place = place.and_then(|term| self.place[joint][first + term]);
-                place.map_or_else(|| vec![0.0; rows], |place| self.joints[joint].x[place].clone())
+                place.map_or_else(|| vec![0.0; rows], |place| self.joints[joint].x[place].to_vec())
             };
             let evaluate = |joint: usize, at: usize| -> Option<Vec<f64>> {
                 let (term, links) = (batch[at], &links[at]);
@@ -318,6 +320,8 @@ impl Table {
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
                         let values = match links.get(c) {
+                            // Rows at rest are not fitted.
+                            Some(_) if rests(joint, chunk, scales) => Some(Vec::new()),
                             Some(link) => Some(link_side_torque(link, joint, chunk, rigid, scales)),
                             None => values(term, joint, chunk, rigid, scales),
                         };
@@ -340,7 +344,7 @@ impl Table {
                 let table = &mut self.joints[k / count];
                 if let Some(column) = column {
                     self.place[k / count][from + k % count] = Some(table.x.len());
-                    table.x.push(column);
+                    table.x.push(Arc::new(column));
                 }
             }
         }
@@ -371,11 +375,25 @@ impl Table {
         let mut torque = vec![0.0; self.len()];
         for (&column, &coefficient) in columns.iter().zip(coefficients) {
             if let Some(place) = self.place[joint][column] {
-                for (sum, x) in torque.iter_mut().zip(&self.joints[joint].x[place]) {
+                for (sum, x) in torque.iter_mut().zip(self.joints[joint].x[place].iter()) {
                     *sum += coefficient * x;
                 }
             }
         }
         torque
     }
+}
+
+/// Whether no row of `chunk` is fitted on `joint`: it is only deflected a little, which does not count as moving, or has no torque.
+fn rests(joint: usize, chunk: &Chunk, scales: &Scales) -> bool {
+    let wider = |(low, high): (f64, f64), &q: &f64| (low.min(q), high.max(q));
+    let (low, high) = chunk.q[joint].iter().fold((f64::INFINITY, f64::NEG_INFINITY), wider);
+    high - low < YIELDING * scales.range[joint] || scales.torque[joint] == 0.0
+}
+
+/// Which of the first columns of a joint are of the first `background` terms; `place` is the place of each term.
+fn of_background(place: &[Option<usize>], columns: usize, background: usize) -> Vec<bool> {
+    let mut is_of_background = vec![false; columns];
+    place.iter().take(background).flatten().for_each(|&place| is_of_background[place] = true);
+    is_of_background
 }

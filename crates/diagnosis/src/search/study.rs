@@ -240,6 +240,7 @@ impl Study {
         let always = contact_columns(f64::NEG_INFINITY, f64::INFINITY, false);
         let force = [0, 1, 2].map(|k| terms.len() + k);
         terms.extend(always);
+        let terms = (prior.terms().len(), terms);
         let table = match known {
             Some(known) => known.formed_anew(motions, rigid, scales, terms, &[], Moving::Steadily),
             None => Table::new(motions, rigid, scales, terms, &[], Moving::Steadily),

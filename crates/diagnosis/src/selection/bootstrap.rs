@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::data::statistics::{NORMAL_95, quantile_of_sorted};
+use crate::regression::table::SharedColumn;
 use crate::search::problem::Selection;
 use crate::search::refine::{sizes, varied};
 use crate::search::study::Study;
@@ -294,10 +295,10 @@ fn systems(
     let p = columns.len() + sizes.len();
     let weights = study.training_products().evidence_weights(&selected.fit.weights);
     // The columns of each joint, with the derivatives by the sizes last.
-    let by_joint: Vec<Vec<Option<Vec<f64>>>> = (0..table.dof())
+    let by_joint: Vec<Vec<Option<SharedColumn>>> = (0..table.dof())
         .into_par_iter()
         .map(|joint| {
-            let mut list: Vec<Option<Vec<f64>>> = columns
+            let mut list: Vec<Option<SharedColumn>> = columns
                 .iter()
                 .map(|&column| table.place[joint][column].map(|place| table.joints[joint].x[place].clone()))
                 .collect();
@@ -320,7 +321,7 @@ fn systems(
                         *sum += coefficient * (b[row] - a[row]) / STEP;
                     }
                 }
-                list.push(acts.then_some(derivative));
+                list.push(acts.then(|| SharedColumn::new(derivative)));
             }
             list
         })
@@ -346,7 +347,7 @@ fn systems(
                 let this = &table.joints[joint];
                 let weight = weights[joint];
                 let acting: Vec<(usize, &Vec<f64>)> =
-                    list.iter().enumerate().filter_map(|(k, x)| x.as_ref().map(|x| (k, x))).collect();
+                    list.iter().enumerate().filter_map(|(k, x)| x.as_deref().map(|x| (k, x))).collect();
                 for row in rows.clone().filter(|&row| this.moving[row]) {
                     for (at, &(i, x)) in acting.iter().enumerate() {
                         let wx = weight * x[row];

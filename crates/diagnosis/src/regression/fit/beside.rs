@@ -38,6 +38,8 @@ impl Products {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use effects::Term;
     use effects::laws::{SIGN, VELOCITY};
     use nalgebra::{DMatrix, DVector};
@@ -51,13 +53,13 @@ mod tests {
         let time = (0..400).map(|row| 0.02 * f64::from(row));
         let speed: Vec<f64> = time.map(|t| (2.1 * t).sin() + 0.4 * (3.3 * t).cos()).collect();
         let sign: Vec<f64> = speed.iter().map(|speed| speed.signum()).collect();
-        let x = [sign, speed];
+        let x = [sign, speed].map(Arc::new);
         let y: Vec<f64> = (0..x[0].len())
             .map(|row| 1.3 * x[0][row] + 0.9 * x[1][row] + 0.3 * (f64::from(row as u32) * 0.7).sin())
             .collect();
         let rows = 0..y.len();
         let mut stretches = Stretch::of(std::slice::from_ref(&rows), &[0], &[true], &[false], &vec![true; y.len()]);
-        stretches[0].refresh(&x, &y);
+        stretches[0].refresh(&x, &y, &[false, true]);
         let mut table = Table::bare([&SIGN, &VELOCITY].map(|law| Term::on(law, 0)).to_vec(), 1);
         table.rows.push(rows);
         table.joints[0].x = x.to_vec();

@@ -25,9 +25,9 @@ impl Products {
     /// or N²), with the evidence and the floor of both together, and the background of these.
     pub fn joined(&self, more: &Self, variance: &[f64], evidence: Vec<f64>, floor: Vec<f64>) -> Self {
         let of = |joint: usize| {
-            let grams = [&self.gram[joint], &more.gram[joint]];
+            let grams = [&self.gram[joint], &more.gram[joint]].map(|gram| Arc::new(gram.clone()));
             let noise = variance[joint] * more.count[joint];
-            Gram::sum(Gram::default(), grams[0].len(), grams.into_iter()).with_noise(noise)
+            Gram::sum(Gram::default(), grams[0].len(), grams.into()).with_noise(noise)
         };
         Self {
             gram: Arc::new((0..self.gram.len()).map(of).collect()),

@@ -1,136 +1,90 @@
-//! Inner products of columns over stretches of rows.
+//! Inner products of columns over rows.
 
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
 use gp::release_vectors;
 
-use crate::thresholds::STRETCHES;
+use crate::lanes::dot_over;
 
-/// The number of new columns whose inner products are formed together; only those with columns up to them are needed.
+/// A column on all rows of a table, which copies of the table share.
+pub type SharedColumn = Arc<Vec<f64>>;
+
+/// The number of columns that are copied together for their inner products.
 const TOGETHER: usize = 64;
 
-/// A recording, a group of several, or a stretch of one, in which one joint moves.
-#[derive(Clone, Debug)]
-pub struct Stretch {
-    /// The recording that it is of, or the first one of the group.
-    pub recording: usize,
-    /// Inner products over its moving rows.
-    pub gram: Gram,
-    /// The moving rows, as runs of consecutive ones.
-    runs: Vec<Range<usize>>,
+/// Marks an inner product that is not formed yet: the bits of a NaN.
+const NOT_FORMED: u64 = u64::MAX;
+
+/// The rows of inner products.
+#[derive(Clone, Debug, Default)]
+enum Over {
+    /// Those of other products, which are all formed.
+    #[default]
+    Elsewhere,
+    /// Runs of consecutive rows.
+    Runs(Arc<[Range<usize>]>),
+    /// Those of several products together.
+    All(Vec<Arc<Gram>>),
 }
 
-/// Consecutive runs of `rows`, which ascend.
-fn runs(rows: &[usize]) -> Vec<Range<usize>> {
-    let follows = |a: &usize, b: &usize| a + 1 == *b;
-    rows.chunk_by(follows).map(|run| run[0]..run[run.len() - 1] + 1).collect()
+/// The inner products of a column with those before it.
+#[derive(Debug)]
+struct Row {
+    /// The column on all rows of the table; empty if it is not needed.
+    x: SharedColumn,
+    /// Those with the background's columns before it, then with itself; if the column is of the background, those with all columns up to it.
+    formed: Vec<f64>,
+    /// Whether all of them are formed.
+    is_whole: bool,
+    /// The other ones, as bits, if they are sums over several recordings.
+    others: OnceLock<Box<[AtomicU64]>>,
 }
 
-impl Stretch {
-    /// The stretches of a joint that is `moving` on some rows: the `groups` of the recordings, whose rows are `recordings`. If only one
-    /// training recording moves the joint, or only one of those on its side of a change (`before`: those from before it), it is divided.
-    pub fn of(
-        recordings: &[Range<usize>],
-        groups: &[usize],
-        held_out: &[bool],
-        before: &[bool],
-        moving: &[bool],
-    ) -> Vec<Self> {
-        let mut rows: Vec<Vec<usize>> = vec![Vec::new(); recordings.len()];
-        for (range, &group) in recordings.iter().zip(groups) {
-            rows[group].extend(range.clone().filter(|&row| moving[row]));
-        }
-        let is_fitted = |r: &usize| !held_out[*r] && !rows[*r].is_empty();
-        let is_alone =
-            |r: usize| (0..rows.len()).filter(is_fitted).filter(|&other| before[other] == before[r]).count() == 1;
-        let mut stretches = Vec::with_capacity(rows.len() + STRETCHES - 1);
-        for (recording, rows) in rows.iter().enumerate() {
-            let pieces = if is_fitted(&recording) && is_alone(recording) { STRETCHES } else { 1 };
-            let length = rows.len().div_ceil(pieces).max(1);
-            stretches.extend(rows.chunks(length).map(|rows| Self {
-                recording,
-                gram: Gram::default(),
-                runs: runs(rows),
-            }));
-        }
-        stretches
-    }
-
-    /// Takes the inner products of the columns at `places` of a stretch of another table with each other, if it has the same rows.
-    pub fn take(&mut self, known: &Self, places: &[usize]) {
-        if self.recording == known.recording && self.runs == known.runs {
-            let row = |k: usize| places[..=k].iter().map(|&place| known.gram.of(places[k], place)).collect();
-            self.gram.rows = (0..places.len()).map(row).collect();
-            self.gram.sums = places.iter().map(|&place| known.gram.sums[place]).collect();
-        }
-    }
-
-    /// Inner products of the new ones among the columns `x`, with all columns and with `y`.
-    pub fn refresh(&mut self, x: &[Vec<f64>], y: &[f64]) {
-        let known = self.gram.len();
-        let total = x.len();
-        if self.gram.right.len() == total && total > 0 {
-            return;
-        }
-        let pick =
-            |signal: &[f64]| -> Vec<f64> { self.runs.iter().flat_map(|run| &signal[run.clone()]).copied().collect() };
-        let y = pick(y);
-        self.gram.square = y.iter().map(|y| y * y).sum();
-        // Columns of another table had another y there.
-        for x in &x[self.gram.right.len()..known] {
-            self.gram.right.push(pick(x).iter().zip(&y).map(|(x, y)| x * y).sum());
-        }
-        let new: Vec<Vec<f64>> = x[known..].iter().map(|x| pick(x)).collect();
-        for x in &new {
-            let sums = |(right, sum): (f64, f64), (x, y): (&f64, &f64)| (right + x * y, sum + x);
-            let (right, sum) = x.iter().zip(&y).fold((0.0, 0.0), sums);
-            self.gram.right.push(right);
-            self.gram.sums.push(sum);
-        }
-        // The columns one after the other, for this call only, because they take as much memory as the table.
-        let mut packed = Vec::with_capacity(total * y.len());
-        for x in &x[..known] {
-            for run in &self.runs {
-                packed.extend_from_slice(&x[run.clone()]);
-            }
-        }
-        new.iter().for_each(|x| packed.extend_from_slice(x));
-        let all = MatRef::from_column_major_slice(&packed, y.len(), total);
-        for from in (known..total).step_by(TOGETHER) {
-            let to = total.min(from + TOGETHER);
-            let mut product = Mat::zeros(to, to - from);
-            matmul(
-                product.as_mut(),
-                Accum::Replace,
-                all.subcols(0, to).transpose(),
-                all.subcols(from, to - from),
-                1.0,
-                Par::Seq,
-            );
-            release_vectors();
-            for k in from..to {
-                self.gram.rows.push(product.col_as_slice(k - from)[..=k].into());
-            }
-        }
+impl Row {
+    fn whole(formed: Vec<f64>) -> Self {
+        Self { x: SharedColumn::default(), formed, is_whole: true, others: OnceLock::new() }
     }
 }
 
-/// Inner products of columns with each other and with y.
+/// Inner products of columns with each other and with y. Those with the background's columns, which every fit needs, are formed at once, and
+/// those of two other columns when they are first needed: of most pairs, they never are.
 #[derive(Clone, Debug, Default)]
 pub struct Gram {
-    /// The lower triangle, row by row. Rows never change, so that copies share them.
-    rows: Vec<Arc<[f64]>>,
+    /// The lower triangle. Rows are shared by copies.
+    rows: Vec<Arc<Row>>,
+    /// The number of each of the background's columns among them.
+    number: Vec<Option<usize>>,
     /// Inner products with y.
     right: Vec<f64>,
     /// The inner product of y with itself.
     square: f64,
     /// The sums of the columns.
     sums: Vec<f64>,
+    over: Over,
 }
 
 impl Gram {
+    /// Those over runs of consecutive rows, of no column yet.
+    pub fn over(runs: Vec<Range<usize>>) -> Self {
+        Self { over: Over::Runs(runs.into()), ..Self::default() }
+    }
+
+    /// The runs of rows; none if these products are the sum of others.
+    pub fn runs(&self) -> &[Range<usize>] {
+        match &self.over {
+            Over::Runs(runs) => runs,
+            Over::Elsewhere | Over::All(_) => &[],
+        }
+    }
+
+    /// Whether they are known for all columns of a table of so many.
+    pub fn is_whole(&self, columns: usize) -> bool {
+        columns > 0 && self.right.len() == columns
+    }
+
     /// The number of columns.
     pub fn len(&self) -> usize {
         self.rows.len()
@@ -138,7 +92,32 @@ impl Gram {
 
     /// The product of two columns.
     pub fn of(&self, i: usize, k: usize) -> f64 {
-        self.rows[i.max(k)][i.min(k)]
+        let (last, first) = (i.max(k), i.min(k));
+        let row = &self.rows[last];
+        if row.is_whole {
+            return row.formed[first];
+        }
+        let formed = if first == last { row.formed.last() } else { self.number[first].map(|at| &row.formed[at]) };
+        if let Some(formed) = formed {
+            return *formed;
+        }
+        match &self.over {
+            Over::Elsewhere => 0.0,
+            Over::Runs(runs) => dot_over(runs, &self.rows[last].x, &self.rows[first].x),
+            Over::All(parts) => {
+                let none = || (0..last).map(|_| AtomicU64::new(NOT_FORMED)).collect();
+                let place = &row.others.get_or_init(none)[first];
+                // The product has the same bits in every thread.
+                match place.load(Ordering::Relaxed) {
+                    NOT_FORMED => {
+                        let value = parts.iter().fold(0.0, |sum, part| sum + part.of(last, first));
+                        place.store(value.to_bits(), Ordering::Relaxed);
+                        value
+                    }
+                    bits => f64::from_bits(bits),
+                }
+            }
+        }
     }
 
     /// The product of a column and y.
@@ -156,17 +135,75 @@ impl Gram {
         self.sums[i]
     }
 
+    /// Adds the new ones among the columns `x`, with their products with y if it is another one, and with the columns that are of the background.
+    pub fn refresh(&mut self, x: &[SharedColumn], y: &[f64], is_of_background: &[bool]) {
+        let Over::Runs(runs) = self.over.clone() else { return };
+        let (known, total) = (self.len(), x.len());
+        self.square = dot_over(&runs, y, y);
+        self.right.extend(x[self.right.len()..].iter().map(|x| dot_over(&runs, x, y)));
+        let sum = |x: &SharedColumn| runs.iter().map(|run| x[run.clone()].iter().sum::<f64>()).sum::<f64>();
+        self.sums.extend(x[known..].iter().map(sum));
+
+        let before = self.number.iter().flatten().count();
+        let (new, others): (Vec<usize>, Vec<usize>) = (known..total).partition(|&k| is_of_background[k]);
+        let old: Vec<usize> = (0..known).filter(|&k| self.number[k].is_some()).collect();
+        let all: Vec<usize> = if new.is_empty() { Vec::new() } else { (0..total).collect() };
+        let with_new = products(&runs, x, &all, &new);
+        let with_old = products(&runs, x, &others, &old);
+        let (mut seen, mut other) = (0, 0);
+        for k in known..total {
+            let row = if is_of_background[k] {
+                let formed = (0..=k).map(|i| with_new[(i, seen)]).collect();
+                self.number.push(Some(before + seen));
+                seen += 1;
+                Row::whole(formed)
+            } else {
+                let of_old = (0..old.len()).map(|at| with_old[(other, at)]);
+                let of_new = (0..seen).map(|at| with_new[(k, at)]);
+                let formed = of_old.chain(of_new).chain([dot_over(&runs, &x[k], &x[k])]).collect();
+                self.number.push(None);
+                other += 1;
+                Row { formed, is_whole: false, ..Row::whole(Vec::new()) }
+            };
+            self.rows.push(Arc::new(Row { x: Arc::clone(&x[k]), ..row }));
+        }
+    }
+
+    /// The products of the columns at these places with each other.
+    pub fn taken(&self, places: &[usize], is_of_background: &[bool]) -> Self {
+        let mut gram = Self { over: self.over.clone(), ..Self::default() };
+        let mut background: Vec<usize> = Vec::new();
+        for (k, &place) in places.iter().enumerate() {
+            let with = |&first: &usize| self.of(first, place);
+            let row = if is_of_background[k] {
+                gram.number.push(Some(background.len()));
+                background.push(place);
+                Row::whole(places[..=k].iter().map(with).collect())
+            } else {
+                gram.number.push(None);
+                let formed = background.iter().chain([&place]).map(with).collect();
+                Row { is_whole: false, ..Row::whole(formed) }
+            };
+            gram.rows.push(Arc::new(Row { x: Arc::clone(&self.rows[place].x), ..row }));
+            gram.sums.push(self.sums[place]);
+        }
+        gram
+    }
+
     /// The products of the columns at these indices, in this order; zero for a missing one.
     pub fn picked(&self, places: &[Option<usize>]) -> Gram {
         let of = |i: Option<usize>, k: Option<usize>| match (i, k) {
             (Some(i), Some(k)) => self.of(i, k),
             _ => 0.0,
         };
+        let row = |k: usize| Arc::new(Row::whole((0..=k).map(|i| of(places[i], places[k])).collect()));
         Gram {
-            rows: (0..places.len()).map(|k| (0..=k).map(|i| of(places[i], places[k])).collect()).collect(),
+            rows: (0..places.len()).map(row).collect(),
+            number: vec![None; places.len()],
             right: places.iter().map(|place| place.map_or(0.0, |i| self.right[i])).collect(),
             square: self.square,
             sums: places.iter().map(|place| place.map_or(0.0, |i| self.sums[i])).collect(),
+            over: Over::Elsewhere,
         }
     }
 
@@ -178,43 +215,103 @@ impl Gram {
 
     /// The sum of several products of the same `columns` columns, the first ones of which may be in `known`: the sum of the same
     /// products when they had fewer columns.
-    pub fn sum<'a>(known: Gram, columns: usize, grams: impl Iterator<Item = &'a Gram> + Clone) -> Gram {
+    pub fn sum(known: Gram, columns: usize, grams: Vec<Arc<Gram>>) -> Gram {
         let mut sum = known;
+        let number = grams.first().map_or_else(|| vec![None; columns], |gram| gram.number.clone());
         for k in sum.len()..columns {
-            let mut row = vec![0.0; k + 1];
-            for gram in grams.clone() {
-                row.iter_mut().zip(gram.rows[k].iter()).for_each(|(value, more)| *value += more);
+            let first = grams.first().map(|gram| &gram.rows[k]);
+            let mut formed = vec![0.0; first.map_or(k + 1, |row| row.formed.len())];
+            for gram in &grams {
+                formed.iter_mut().zip(&gram.rows[k].formed).for_each(|(value, more)| *value += more);
             }
-            sum.rows.push(row.into());
-            sum.right.push(grams.clone().fold(0.0, |value, gram| value + gram.right[k]));
-            sum.sums.push(grams.clone().fold(0.0, |value, gram| value + gram.sums[k]));
+            let is_whole = first.is_none_or(|row| row.is_whole);
+            sum.rows.push(Arc::new(Row { is_whole, ..Row::whole(formed) }));
+            sum.right.push(grams.iter().fold(0.0, |value, gram| value + gram.right[k]));
+            sum.sums.push(grams.iter().fold(0.0, |value, gram| value + gram.sums[k]));
         }
-        sum.square = grams.fold(0.0, |square, gram| square + gram.square);
+        sum.number = number;
+        sum.square = grams.iter().fold(0.0, |square, gram| square + gram.square);
+        sum.over = Over::All(grams);
         sum
     }
 }
 
+/// The inner products of each of `some` of the columns `x`, in rows, with each of `others`, over runs of rows.
+fn products(runs: &[Range<usize>], x: &[SharedColumn], some: &[usize], others: &[usize]) -> Mat<f64> {
+    let length: usize = runs.iter().map(Range::len).sum();
+    let packed = |columns: &[usize]| -> Vec<f64> {
+        let mut packed = Vec::with_capacity(length * columns.len());
+        for &column in columns {
+            runs.iter().for_each(|run| packed.extend_from_slice(&x[column][run.clone()]));
+        }
+        packed
+    };
+    let mut all = Mat::zeros(some.len(), others.len());
+    if others.is_empty() {
+        return all;
+    }
+    let right = packed(others);
+    let right = MatRef::from_column_major_slice(&right, length, others.len());
+    let mut from = 0;
+    for columns in some.chunks(TOGETHER) {
+        let left = packed(columns);
+        let left = MatRef::from_column_major_slice(&left, length, columns.len());
+        let to = all.as_mut().subrows_mut(from, columns.len());
+        matmul(to, Accum::Replace, left.transpose(), right, 1.0, Par::Seq);
+        release_vectors();
+        from += columns.len();
+    }
+    all
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::Stretch;
     use super::*;
 
-    /// A recording is divided if it is the only one that moves the joint on its side of a change: what changed then predicts parts to which it
-    /// was not fitted.
+    /// Products that are formed at once, when they are needed, or taken from another table are those of the rows, in the order of the
+    /// columns of each table, and over several recordings together.
     #[test]
-    fn a_recording_alone_on_its_side_is_divided() {
-        let recordings = [0..100, 100..200, 200..300];
-        let pieces = |before: [bool; 3], held_out: [bool; 3]| -> [usize; 3] {
-            let stretches = Stretch::of(&recordings, &[0, 1, 2], &held_out, &before, &[true; 300]);
-            [0, 1, 2].map(|recording| stretches.iter().filter(|stretch| stretch.recording == recording).count())
+    fn products_are_those_of_the_rows() {
+        let signal = |seed: usize| (0..90).map(|row| ((seed * 37 + row * row) as f64 * 0.1).sin()).collect();
+        let x: Vec<SharedColumn> = (0..7).map(|seed| Arc::new(signal(seed))).collect();
+        let [y, other]: [Vec<f64>; 2] = [signal(20), signal(21)];
+        let moving: Vec<bool> = (0..90).map(|row| row % 11 != 0).collect();
+        let stretches = || Stretch::of(&[0..50, 50..90], &[0, 1], &[false; 2], &[false; 2], &moving);
+        let near = |value: f64, expected: f64| (value - expected).abs() < 1e-9;
+        let product = |rows: &Range<usize>, a: &[f64], b: &[f64]| -> f64 {
+            rows.clone().filter(|&row| moving[row]).map(|row| a[row] * b[row]).sum()
         };
-        let fitted = [false; 3];
-        let grouped = Stretch::of(&recordings, &[0, 0, 2], &fitted, &fitted, &[true; 300]);
-        let of: Vec<(usize, Range<usize>)> =
-            grouped.iter().map(|stretch| (stretch.recording, stretch.runs[0].clone())).collect();
-        assert_eq!(of, [(0, 0..200), (2, 200..300)]);
-        assert_eq!(pieces([false; 3], fitted), [1, 1, 1]);
-        assert_eq!(pieces([true, true, false], fitted), [1, 1, STRETCHES]);
-        assert_eq!(pieces([true, false, false], fitted), [STRETCHES, 1, 1]);
-        assert_eq!(pieces([true, false, false], [false, false, true]), [STRETCHES, STRETCHES, 1]);
+        let are_right = |gram: &Gram, rows: Range<usize>, x: &[SharedColumn], y: &[f64]| {
+            let of_pair = |i: usize, k: usize| near(gram.of(i, k), product(&rows, &x[i], &x[k]));
+            let of_column =
+                |i: usize| (0..x.len()).all(|k| of_pair(i, k)) && near(gram.with_y(i), product(&rows, &x[i], y));
+            gram.len() == x.len() && (0..x.len()).all(of_column) && near(gram.y_square(), product(&rows, y, y))
+        };
+        let mut first = stretches();
+        let background = [false, true, false, true, true, false, false];
+        for count in [4, 7] {
+            first.iter_mut().for_each(|stretch| stretch.refresh(&x[..count], &y, &background[..count]));
+            // Some products are formed before columns are added.
+            assert_ne!(first[0].gram.of(2, 0), 0.0);
+        }
+        assert!(are_right(&first[0].gram, 0..50, &x, &y));
+        let all = Gram::sum(Gram::default(), 7, first.iter().map(|stretch| Arc::clone(&stretch.gram)).collect());
+        assert!(are_right(&all, 0..90, &x, &y));
+
+        // Another table has some of the columns in another order, new ones, and another y.
+        let places = [4, 6, 1, 0, 3];
+        let mut columns: Vec<SharedColumn> = places.iter().map(|&place| Arc::clone(&x[place])).collect();
+        let mut second = stretches();
+        let background = [true, false, true, false, true, false, true];
+        for (new, known) in second.iter_mut().zip(&first) {
+            new.take(known, &places, &background[..5]);
+        }
+        columns.extend([30, 31].map(|seed| Arc::new(signal(seed))));
+        second.iter_mut().for_each(|stretch| stretch.refresh(&columns, &other, &background));
+        assert!(are_right(&second[0].gram, 0..50, &columns, &other));
+        assert!(are_right(&second[1].gram, 50..90, &columns, &other));
+        let grams = second.iter().map(|stretch| Arc::clone(&stretch.gram)).collect();
+        assert!(are_right(&Gram::sum(Gram::default(), 7, grams), 0..90, &columns, &other));
     }
 }

@@ -39,7 +39,7 @@ impl<'a> Columns<'a> {
         let this = &table.joints[joint];
         let column = |term: &Term| {
             let number = table.terms.iter().position(|known| known == term)?;
-            Some(&this.x[table.place[joint][number]?])
+            Some(&*this.x[table.place[joint][number]?])
         };
         let inertial = |number: usize| Term::about(&INERTIAL_PARAMETER, number / PER_LINK).of(number % PER_LINK);
         let friction = [Term::on(&SIGN, joint), Term::on(&VELOCITY, joint)];

@@ -68,7 +68,7 @@ impl ReversedResidual<'_> {
             .map(|&joint| {
                 let column = |what: &Term| {
                     let term = table.terms.iter().position(|term| term == what)?;
-                    table.place[joint][term].map(|place| &table.joints[joint].x[place])
+                    table.place[joint][term].map(|place| &*table.joints[joint].x[place])
                 };
                 what.iter().map(column).collect()
             })

@@ -6,6 +6,7 @@ use effects::laws::RIGID;
 use effects::{OnLinks, Term};
 use rayon::prelude::*;
 
+use super::formed::Formed;
 use super::linearisation_point::inertial_changes;
 use super::on_links::through_gear;
 use super::{Claim, LinearisationPoint, Study};
@@ -49,7 +50,7 @@ impl Study {
         let Data { motions, rigid, scales, .. } = &self.data;
         let background = 0..self.prior.terms().len();
         let columns: Vec<usize> = background.chain(columns.iter().copied()).collect();
-        let mut empty = Table::new(motions, rigid, scales, Vec::new(), &[], moving);
+        let mut empty = Table::new(motions, rigid, scales, (0, Vec::new()), &[], moving);
         // The torques of this table contain those of the effects in the arm about which it is evaluated.
         for (joint, known) in empty.joints.iter_mut().zip(&self.table.joints) {
             joint.y.clone_from(&known.y);
@@ -65,7 +66,7 @@ impl Study {
     /// A table of `terms` alone, along the same motions and arm.
     pub fn table_of(&self, terms: Vec<Term>) -> Table {
         let Data { motions, rigid, scales, .. } = &self.data;
-        Table::new(motions, rigid, scales, terms, &[], self.moving)
+        Table::new(motions, rigid, scales, (0, terms), &[], self.moving)
     }
 
     /// `columns` and, after them, `more` terms fitted to the training recordings at given weights of the joints. The fit's columns are
@@ -178,9 +179,11 @@ impl Study {
         let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
         let is_of_links = |term: &Term| term.is(&INERTIAL_PARAMETER) || term.is(&OWN_LOAD);
         let mut old = std::mem::take(&mut self.table);
+        // Its products refer to its columns, most of which are not needed any more.
+        self.formed = Formed::default();
         old.retain(|term| !term.is_dynamic() || keeps(term) || same_regressor && is_of_links(term));
-        self.table =
-            old.formed_anew(&self.data.motions, &self.data.rigid, &self.data.scales, terms, &last.carried, self.moving);
+        let (Data { motions, rigid, scales, .. }, background) = (&self.data, self.prior.terms().len());
+        self.table = old.formed_anew(motions, rigid, scales, (background, terms), &last.carried, self.moving);
         Some(set)
     }
 
