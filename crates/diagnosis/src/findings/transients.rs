@@ -37,6 +37,8 @@ struct TransientForce {
     force: Vector3<f64>,
     /// The part of the transient's power that the force explains.
     explained: f64,
+    /// The mean weighted power of each joint's residual.
+    powers: Vec<f64>,
 }
 
 /// The residuals of the named effects.
@@ -89,6 +91,16 @@ pub fn search(
         felt >= data.motions.dof.min(LEAST_PUSHED)
     };
     let mut while_moving = 0;
+    let mut others: Vec<[f64; 2]> = Vec::new();
+    let mut unexplained = |residuals: &Residuals<'_>, source: usize, window: [f64; 2], powers: &[f64]| {
+        // The joint on which the transient exceeds the usual residual most.
+        let at = (0..data.motions.dof).max_by(|&a, &b| powers[a].total_cmp(&powers[b]));
+        let Some(joint) = at else { return };
+        let entry = transients.unexplained.entry(joint).or_default();
+        entry.0 = entry.0.max(data.share(joint, residuals.rms(joint, window.into())));
+        let [start, end] = window.map(|time| data.motions.own_time(source, time));
+        entry.1.push(TimeWindow { recording: data.motions.sources[source].name.clone(), start, end });
+    };
     for (from, to) in windows {
         let power = residuals.power((from, to), |_, _| true);
         while_moving += usize::from(power.is_some_and(|(_, powers)| is_felt(&powers)));
@@ -100,27 +112,19 @@ pub fn search(
         if !is_felt(&powers) {
             continue;
         }
-        let name = data.motions.sources[recording].name.clone();
         let (force, explained) = residuals.force((from, to));
         let is_early = data.motions.is_at_a_beginning(recording, to);
         if explained > ONE_FORCE && !is_contact_named && !is_early {
-            forces.push(TransientForce { window: [from, to], source: recording, force, explained });
+            forces.push(TransientForce { window: [from, to], source: recording, force, explained, powers });
         } else {
-            // The joint on which the transient exceeds the usual residual most.
-            let window = (from, to);
-            let at = (0..data.motions.dof).map(|joint| (powers[joint], joint)).max_by(|a, b| a.0.total_cmp(&b.0));
-            if let Some((_, joint)) = at {
-                let rms = data.share(joint, residuals.rms(joint, window));
-                let entry = transients.unexplained.entry(joint).or_default();
-                entry.0 = entry.0.max(rms);
-                entry.1.push(TimeWindow {
-                    recording: name,
-                    start: data.motions.own_time(recording, from),
-                    end: data.motions.own_time(recording, to),
-                });
-            }
+            others.push([from, to]);
+            unexplained(&residuals, recording, [from, to], &powers);
         }
     }
+    // What goes on before or after a window, where no force explains it, is not a push in the window either.
+    let (parts, forces): (Vec<TransientForce>, Vec<TransientForce>) =
+        forces.into_iter().partition(|push| others.iter().any(|other| are_near(push.window, *other)));
+    parts.iter().for_each(|push| unexplained(&residuals, push.source, push.window, &push.powers));
     // Transients that recur, also where joints start or stop, are an error of the model and not contacts.
     let apart = forces.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>();
     if while_moving.max(apart) > MOST_TRANSIENTS {
@@ -131,6 +135,12 @@ pub fn search(
         windows.sort_by(|a, b| a.recording.cmp(&b.recording).then(a.start.total_cmp(&b.start)));
     }
     transients
+}
+
+/// Whether the time between two windows is shorter than the longer one of them.
+fn are_near(one: [f64; 2], other: [f64; 2]) -> bool {
+    let between = (other[0] - one[1]).max(one[0] - other[1]);
+    between < (one[1] - one[0]).max(other[1] - other[0])
 }
 
 /// The usual residual of a joint: the median over stretches of all moving rows, or that of a held-out recording alone where
@@ -243,7 +253,7 @@ impl Residuals<'_> {
     fn contact(&self, forces: &[TransientForce]) -> Option<Finding> {
         let data = self.data;
         let strongest = forces.iter().max_by(|a, b| a.force.norm().total_cmp(&b.force.norm()))?;
-        let TransientForce { window: [from, to], source, force, explained } = strongest.clone();
+        let TransientForce { window: [from, to], source, force, explained, .. } = strongest.clone();
         let same: Vec<[f64; 2]> = {
             let mut list: Vec<[f64; 2]> = forces
                 .iter()
@@ -286,6 +296,14 @@ impl Residuals<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn windows_are_near_if_the_time_between_them_is_shorter_than_one_of_them() {
+        for (other, near) in [([2.0, 2.2], true), ([2.9, 3.0], true), ([3.1, 3.2], false), ([-0.1, 0.2], true)] {
+            assert_eq!(are_near([1.0, 2.0], other), near, "{other:?}");
+            assert_eq!(are_near(other, [1.0, 2.0]), near, "{other:?}");
+        }
+    }
 
     #[test]
     fn rows_near_a_rest_are_not_settled_and_a_reversal_is_no_rest() {
