@@ -31,7 +31,6 @@ mod findings;
 mod lanes;
 mod next;
 mod options;
-mod pass;
 mod regression;
 mod report;
 mod search;
