@@ -8,6 +8,7 @@ use effects::laws::ACCELERATION;
 use effects::sensor::TORQUE_SCALE;
 
 use crate::data::Data;
+use crate::data::statistics::NORMAL_95;
 use crate::findings::other_friction::{possible_beside, widen};
 use crate::report::{Change, Confusable, Finding, Parameter, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
@@ -88,7 +89,9 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, comparison: 
         let is_open = of_others
             || of_all
             || needs_size && may_be_nothing(spec, &named.parameters)
-            || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain);
+            || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain)
+            || named.effect.is(&INERTIAL_SCALE)
+                && may_be_constants(named.parameters.get("factor"), study.stated.torque_accuracy());
         list.push(Finding {
             other: named.other,
             parameters: named.parameters,
@@ -134,6 +137,12 @@ fn may_be_links(links: f64, mass: Option<&Parameter>, held_out_gain: Option<f64>
     let is_unsure = |mass: &Parameter| 0.5 * (mass.ci95[1] - mass.ci95[0]) > UNSURE_MASS * mass.value.abs();
     let is_unproven = held_out_gain.is_none_or(|gain| gain < GAIN_BESIDE_LINKS);
     links >= MUCH_WRONG_LINKS && is_unproven && mass.is_some_and(is_unsure)
+}
+
+/// Whether a factor on all masses is as small as a usual deviation of the torque constants, which the joints may have in common; `accuracy` is
+/// its standard deviation (relative).
+fn may_be_constants(factor: Option<&Parameter>, accuracy: f64) -> bool {
+    factor.is_some_and(|factor| (factor.value - 1.0).abs() <= NORMAL_95 * accuracy)
 }
 
 /// How a candidate changed since the recordings from before.
@@ -198,6 +207,17 @@ fn place(last: &FinalFit, candidate: &Candidate) -> Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// With torque constants that are accurate to 5 %, a factor of 6 % on all masses may be theirs, and one of 20 % may not.
+    #[test]
+    fn a_small_factor_on_all_masses_may_be_one_on_the_torque_constants() {
+        let factor = |value: f64| Parameter { value, ci95: [value, value], unit: "" };
+        assert!(may_be_constants(Some(&factor(1.06)), 0.05));
+        assert!(may_be_constants(Some(&factor(0.94)), 0.05));
+        assert!(!may_be_constants(Some(&factor(1.2)), 0.05));
+        assert!(!may_be_constants(Some(&factor(1.06)), 0.01), "constants that are known better");
+        assert!(!may_be_constants(None, 0.05));
+    }
 
     #[test]
     fn a_body_of_any_mass_beside_links_that_are_all_wrong_may_be_a_part_of_them() {
