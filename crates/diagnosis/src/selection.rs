@@ -119,8 +119,10 @@ fn found(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> (judge::Judged, Resa
         let selected = plan::search(study, progress);
         let selected = payload::compact::with_drives(study, selected);
         progress(Step::new(0.6, "testing the selected effects"));
-        let (products, held) = (study.training_products(), study.held_products());
-        let mut judged = judge::judge(study, &products, held.as_ref(), selected);
+        let mut judged = {
+            let (products, held) = (study.training_products(), study.held_products());
+            judge::judge(study, &products, held.as_ref(), selected)
+        };
         progress(Step::new(0.61, "final fit and intervals"));
         let resampled = final_fit::confirmed(study, &mut judged);
         // A refused name may have prevented that another effect was found.

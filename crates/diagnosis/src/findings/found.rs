@@ -8,7 +8,6 @@ use effects::laws::ACCELERATION;
 use effects::sensor::TORQUE_SCALE;
 
 use crate::data::Data;
-use crate::data::statistics::NORMAL_95;
 use crate::findings::other_friction::{possible_beside, widen};
 use crate::report::{Change, Confusable, Finding, Parameter, Place};
 use crate::search::candidate::{Candidate, Hypothesis};
@@ -21,7 +20,7 @@ use crate::selection::naming::{may_be_nothing, name};
 use crate::selection::payload::as_last_link;
 use crate::selection::rivals::{Comparison, Rival, compared, probability};
 use crate::selection::torque_constants;
-use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MUCH_WRONG_LINKS, SUREST, UNSURE_MASS};
+use crate::thresholds::{GAIN_BESIDE_LINKS, LISTED_SHARE, MOST_USUAL, MUCH_WRONG_LINKS, SUREST, UNSURE_MASS};
 
 /// The findings, each with its candidate.
 pub fn findings(last: &FinalFit) -> Vec<(Finding, Option<usize>)> {
@@ -91,6 +90,7 @@ fn finding(last: &FinalFit, problem: &Problem<'_>, member: &Member, comparison: 
             || needs_size && may_be_nothing(spec, &named.parameters)
             || is_body && may_be_links(study.strengths.common(), named.parameters.get("mass"), gain)
             || named.effect.is(&INERTIAL_SCALE)
+                && change.is_none()
                 && may_be_constants(named.parameters.get("factor"), study.stated.torque_accuracy());
         list.push(Finding {
             other: named.other,
@@ -142,7 +142,7 @@ fn may_be_links(links: f64, mass: Option<&Parameter>, held_out_gain: Option<f64>
 /// Whether a factor on all masses is as small as a usual deviation of the torque constants, which the joints may have in common; `accuracy` is
 /// its standard deviation (relative).
 fn may_be_constants(factor: Option<&Parameter>, accuracy: f64) -> bool {
-    factor.is_some_and(|factor| (factor.value - 1.0).abs() <= NORMAL_95 * accuracy)
+    factor.is_some_and(|factor| (factor.value - 1.0).abs() <= MOST_USUAL * accuracy)
 }
 
 /// How a candidate changed since the recordings from before.

@@ -91,7 +91,7 @@ pub fn search(
         felt >= data.motions.dof.min(LEAST_PUSHED)
     };
     let mut while_moving = 0;
-    let mut others: Vec<[f64; 2]> = Vec::new();
+    let mut without_force: Vec<(usize, [f64; 2])> = Vec::new();
     let mut unexplained = |residuals: &Residuals<'_>, source: usize, window: [f64; 2], powers: &[f64]| {
         // The joint on which the transient exceeds the usual residual most.
         let at = (0..data.motions.dof).max_by(|&a, &b| powers[a].total_cmp(&powers[b]));
@@ -117,13 +117,15 @@ pub fn search(
         if explained > ONE_FORCE && !is_contact_named && !is_early {
             forces.push(TransientForce { window: [from, to], source: recording, force, explained, powers });
         } else {
-            others.push([from, to]);
+            if explained <= ONE_FORCE {
+                without_force.push((recording, [from, to]));
+            }
             unexplained(&residuals, recording, [from, to], &powers);
         }
     }
-    // What goes on before or after a window, where no force explains it, is not a push in the window either.
+    // A push beside a transient that no force explains is a part of that transient.
     let (parts, forces): (Vec<TransientForce>, Vec<TransientForce>) =
-        forces.into_iter().partition(|push| others.iter().any(|other| are_near(push.window, *other)));
+        forces.into_iter().partition(|push| is_part((push.source, push.window), &without_force));
     parts.iter().for_each(|push| unexplained(&residuals, push.source, push.window, &push.powers));
     // Transients that recur, also where joints start or stop, are an error of the model and not contacts.
     let apart = forces.len() + transients.unexplained.values().map(|entry| entry.1.len()).sum::<usize>();
@@ -137,10 +139,13 @@ pub fn search(
     transients
 }
 
-/// Whether the time between two windows is shorter than the longer one of them.
-fn are_near(one: [f64; 2], other: [f64; 2]) -> bool {
-    let between = (other[0] - one[1]).max(one[0] - other[1]);
-    between < (one[1] - one[0]).max(other[1] - other[0])
+/// Whether a window is beside one of `others` in its recording: the time between them is shorter than either of them.
+fn is_part((recording, window): (usize, [f64; 2]), others: &[(usize, [f64; 2])]) -> bool {
+    let is_near = |other: &[f64; 2]| {
+        let between = (other[0] - window[1]).max(window[0] - other[1]);
+        between < (window[1] - window[0]).min(other[1] - other[0])
+    };
+    others.iter().any(|(of, other)| *of == recording && is_near(other))
 }
 
 /// The usual residual of a joint: the median over stretches of all moving rows, or that of a held-out recording alone where
@@ -298,11 +303,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn windows_are_near_if_the_time_between_them_is_shorter_than_one_of_them() {
-        for (other, near) in [([2.0, 2.2], true), ([2.9, 3.0], true), ([3.1, 3.2], false), ([-0.1, 0.2], true)] {
-            assert_eq!(are_near([1.0, 2.0], other), near, "{other:?}");
-            assert_eq!(are_near(other, [1.0, 2.0]), near, "{other:?}");
+    fn a_push_is_a_part_of_a_transient_beside_it_in_the_same_recording() {
+        let push = (1, [1.0, 2.0]);
+        for (other, expected) in [([2.2, 2.5], true), ([2.4, 2.6], false), ([-0.1, 0.6], true), ([3.1, 9.0], false)] {
+            assert_eq!(is_part(push, &[(1, other)]), expected, "{other:?}");
+            assert!(!is_part(push, &[(0, other)]), "another recording on the same clock");
         }
+        assert!(!is_part(push, &[]));
     }
 
     #[test]

@@ -113,11 +113,16 @@ impl Table {
                     y.extend(chunk.filter(&difference));
                     let core = (CORE * chunk.kernel.width() / chunk.period).ceil() as usize;
                     let rest = scales.rest[joint];
-                    let rests = rests(joint, chunk, scales);
+                    // A joint that is only deflected a little does not count as moving.
+                    let (low, high) = chunk.q[joint]
+                        .iter()
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &q| (low.min(q), high.max(q)));
+                    let yields = high - low < YIELDING * scales.range[joint];
+                    let is_dead = scales.torque[joint] == 0.0;
                     moves.extend((0..chunk.rows()).map(|row| {
                         let tick = chunk.tick_of(row);
                         let qd = &chunk.qd[joint];
-                        if rests {
+                        if yields || is_dead {
                             return false;
                         }
                         let window = &qd[tick.saturating_sub(core)..(tick + core + 1).min(qd.len())];
@@ -181,6 +186,7 @@ impl Table {
     /// Removes the terms that are not `kept`; the rows of the others are unchanged.
     pub fn retain(&mut self, kept: impl Fn(&Term) -> bool) {
         let list: Vec<usize> = (0..self.terms.len()).filter(|&k| kept(&self.terms[k])).collect();
+        self.background = list.iter().take_while(|k| **k < self.background).count();
         self.terms = list.iter().map(|&k| self.terms[k]).collect();
         for place in &mut self.place {
             *place = list.iter().map(|&k| place[k]).collect();
@@ -320,8 +326,6 @@ impl Table {
                 } else {
                     for (c, (chunk, rigid)) in motions.chunks.iter().zip(rigid).enumerate() {
                         let values = match links.get(c) {
-                            // Rows at rest are not fitted.
-                            Some(_) if rests(joint, chunk, scales) => Some(Vec::new()),
                             Some(link) => Some(link_side_torque(link, joint, chunk, rigid, scales)),
                             None => values(term, joint, chunk, rigid, scales),
                         };
@@ -382,13 +386,6 @@ impl Table {
         }
         torque
     }
-}
-
-/// Whether no row of `chunk` is fitted on `joint`: it is only deflected a little, which does not count as moving, or has no torque.
-fn rests(joint: usize, chunk: &Chunk, scales: &Scales) -> bool {
-    let wider = |(low, high): (f64, f64), &q: &f64| (low.min(q), high.max(q));
-    let (low, high) = chunk.q[joint].iter().fold((f64::INFINITY, f64::NEG_INFINITY), wider);
-    high - low < YIELDING * scales.range[joint] || scales.torque[joint] == 0.0
 }
 
 /// Which of the first columns of a joint are of the first `background` terms; `place` is the place of each term.

@@ -13,10 +13,12 @@ pub fn search(study: &mut Study, progress: &dyn Fn(Step<'_>)) -> Selection {
     let baseline: Vec<usize> = (0..study.candidates.len())
         .filter(|&c| study.candidates[c].hypothesis.spec().is_friction && study.always_acts(c))
         .collect();
-    let products = study.training_products();
-    // With a background that is stated, or of placeholders, the weights are not recomputed by themselves.
-    let problem = study.problem(&products);
-    let mut selected = problem.reweighted(problem.choose(baseline, &products.first_weights()));
+    let mut selected = {
+        let products = study.training_products();
+        let problem = study.problem(&products);
+        // With a background that is stated, or of placeholders, the weights are not recomputed by themselves.
+        problem.reweighted(problem.choose(baseline, &products.first_weights()))
+    };
     for round in 1..=MOST_SUGGESTIONS {
         progress(Step::new(0.12 + 0.08 * round as f64, &format!("searching effects, round {round}")));
         let before = selected.set.clone();

@@ -39,8 +39,10 @@ pub fn fit(study: &mut Study, wanted: &[Wanted]) -> Result<Judged, DiagnosisErro
     let (bodies, mut waiting): (Vec<Request<'_>>, Vec<Request<'_>>) =
         check(study, wanted)?.into_iter().partition(is_body);
     let mut fitted: Vec<Request<'_>> = Vec::new();
-    let products = study.training_products();
-    let mut selected = study.problem(&products).choose(Vec::new(), &products.first_weights());
+    let mut selected = {
+        let products = study.training_products();
+        study.problem(&products).choose(Vec::new(), &products.first_weights())
+    };
     // The time of an onset or a contact and the period of a ripple follow from the residual of the other effects.
     for suggest in [false, true] {
         if suggest {

@@ -47,9 +47,9 @@ pub const MOST_CONSTANT: f64 = 0.2;
 /// The largest deviation of a torque constant in the background in standard deviations, where the user states an
 /// accuracy of which this is more than [`MOST_CONSTANT`]. Source: the ratio of [`MOST_CONSTANT`] to [`GAIN_PRIOR`].
 pub const MOST_DEVIATIONS: f64 = 4.0;
-/// The deviation of a torque constant in the background, in standard deviations, beyond which a note reports it.
-/// Source: cases in which the constants of the background explained a common factor of all masses or torques without a
-/// word.
+/// The deviation of a torque constant in the background, in standard deviations, beyond which a note reports it; and that of a common
+/// factor of all masses from one, up to which it may as well be one of all torque constants. Source: cases in which the constants of the
+/// background explained a common factor of all masses or torques without a word.
 pub const MOST_USUAL: f64 = 2.0;
 /// The evidence that a part of the background must bring (nats). Source: first background.
 pub const PER_BACKGROUND_PART: f64 = 4.0;

@@ -130,6 +130,10 @@ fn extended(group: &[&Stretch], known: &DMatrix<f64>, places: &[usize]) -> DMatr
             gram.view_mut((0, k), (before, 1)).copy_from(&known.view((0, k), (before, 1)));
         }
         for i in from..=p {
+            if i < k {
+                gram[(i, k)] = gram[(k, i)];
+                continue;
+            }
             gram[(i, k)] = group
                 .iter()
                 .map(|stretch| match (i < p, k < p) {

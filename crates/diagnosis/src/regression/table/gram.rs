@@ -33,11 +33,11 @@ enum Over {
 /// The inner products of a column with those before it.
 #[derive(Debug)]
 struct Row {
-    /// The column on all rows of the table; empty if it is not needed.
+    /// The column on all rows of the table; empty in sums and picked products.
     x: SharedColumn,
     /// Those with the background's columns before it, then with itself; if the column is of the background, those with all columns up to it.
     formed: Vec<f64>,
-    /// Whether all of them are formed.
+    /// Whether those with all columns up to it are formed, as for a column of the background and in picked products.
     is_whole: bool,
     /// The other ones, as bits, if they are sums over several recordings.
     others: OnceLock<Box<[AtomicU64]>>,
@@ -55,7 +55,7 @@ impl Row {
 pub struct Gram {
     /// The lower triangle. Rows are shared by copies.
     rows: Vec<Arc<Row>>,
-    /// The number of each of the background's columns among them.
+    /// For each column, its number among the background's columns, if it is one of them.
     number: Vec<Option<usize>>,
     /// Inner products with y.
     right: Vec<f64>,
@@ -218,6 +218,7 @@ impl Gram {
     pub fn sum(known: Gram, columns: usize, grams: Vec<Arc<Gram>>) -> Gram {
         let mut sum = known;
         let number = grams.first().map_or_else(|| vec![None; columns], |gram| gram.number.clone());
+        debug_assert!(grams.iter().all(|gram| gram.number == number), "the same columns are of the background");
         for k in sum.len()..columns {
             let first = grams.first().map(|gram| &gram.rows[k]);
             let mut formed = vec![0.0; first.map_or(k + 1, |row| row.formed.len())];
@@ -290,20 +291,23 @@ mod tests {
         };
         let mut first = stretches();
         let background = [false, true, false, true, true, false, false];
+        let mut all = Gram::default();
         for count in [4, 7] {
             first.iter_mut().for_each(|stretch| stretch.refresh(&x[..count], &y, &background[..count]));
-            // Some products are formed before columns are added.
-            assert_ne!(first[0].gram.of(2, 0), 0.0);
+            // The products of all columns are formed before others are added.
+            all = Gram::sum(all, count, first.iter().map(|stretch| Arc::clone(&stretch.gram)).collect());
+            assert!(are_right(&all, 0..90, &x[..count], &y));
         }
         assert!(are_right(&first[0].gram, 0..50, &x, &y));
-        let all = Gram::sum(Gram::default(), 7, first.iter().map(|stretch| Arc::clone(&stretch.gram)).collect());
-        assert!(are_right(&all, 0..90, &x, &y));
 
-        // Another table has some of the columns in another order, new ones, and another y.
+        let picked = all.picked(&[Some(5), None, Some(1)]);
+        assert_eq!([picked.of(0, 2), picked.of(1, 2), picked.sum_of(2)], [all.of(5, 1), 0.0, all.sum_of(1)]);
+
+        // Another table has some of the columns in another order, new ones, another y, and other columns of the background.
         let places = [4, 6, 1, 0, 3];
         let mut columns: Vec<SharedColumn> = places.iter().map(|&place| Arc::clone(&x[place])).collect();
         let mut second = stretches();
-        let background = [true, false, true, false, true, false, true];
+        let background = [true, false, true, true, false, false, true];
         for (new, known) in second.iter_mut().zip(&first) {
             new.take(known, &places, &background[..5]);
         }

@@ -179,7 +179,7 @@ impl Study {
         let keeps = |term: &Term| term.law.link_side.is_some() && is_near(term) && !selected.contains(term);
         let is_of_links = |term: &Term| term.is(&INERTIAL_PARAMETER) || term.is(&OWN_LOAD);
         let mut old = std::mem::take(&mut self.table);
-        // Its products refer to its columns, most of which are not needed any more.
+        // Stored products refer to its columns, most of which are not needed any more.
         self.formed = Formed::default();
         old.retain(|term| !term.is_dynamic() || keeps(term) || same_regressor && is_of_links(term));
         let (Data { motions, rigid, scales, .. }, background) = (&self.data, self.prior.terms().len());
@@ -353,8 +353,10 @@ impl Study {
         self.exchanged.clear();
         self.strengths =
             PriorStrengths { least: self.strengths.least.clone(), ..self.stated.first(self.data.arm.dof()) };
-        let products = self.training_products();
-        let nothing = self.problem(&products).choose(Vec::new(), &products.first_weights());
+        let nothing = {
+            let products = self.training_products();
+            self.problem(&products).choose(Vec::new(), &products.first_weights())
+        };
         self.about(&nothing.fit, &[], true);
     }
 }
