@@ -4,6 +4,7 @@ pub mod background;
 pub mod bodies;
 pub mod columns;
 pub mod fit;
+mod lazy;
 pub mod small;
 pub mod stated;
 pub mod strengths;

@@ -3,7 +3,6 @@
 //! With A = BᵀWB + K = LLᵀ for the background's columns B, their precision K and W the weights of the evidence, a product of two
 //! columns becomes xᵀWx' − (L⁻¹BᵀWx)ᵀ(L⁻¹BᵀWx'), and the background costs ½ (ln det A − ln det K) + ½ (δ − m)ᵀK(δ − m) with m the prior's centre.
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError};
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -11,13 +10,11 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use super::Products;
 use crate::lanes::{LANES, Lanes, dot, dots_of, dots_with, forward};
 use crate::regression::background::Background;
+use crate::regression::lazy::Lazy;
 use crate::regression::table::Table;
 
 /// The number of weights for which the elimination is stored.
 const KEPT: usize = 12;
-
-/// Marks a product that is not computed yet: the bits of a NaN.
-const NOT_FORMED: u64 = u64::MAX;
 
 /// The background eliminated at given weights.
 #[derive(Debug)]
@@ -32,9 +29,9 @@ pub struct Eliminated {
     with_y: Vec<f64>,
     /// L⁻¹ BᵀW x of each requested column of the table.
     with_columns: Vec<OnceLock<Vec<f64>>>,
-    /// The products of the columns of a fit with all others, as bits. They are cached, because every candidate needs them
+    /// The products of the columns of a fit with all others. They are cached, because every candidate needs them
     /// in every round.
-    with_others: Vec<OnceLock<Vec<AtomicU64>>>,
+    with_others: Vec<OnceLock<Vec<Lazy>>>,
     /// ½ (ln det A − ln det K) (nats).
     pub occam: f64,
 }
@@ -104,14 +101,14 @@ impl Eliminated {
 
     /// Stores the products of these columns with others from now on.
     pub fn store(&self, columns: &[usize]) {
-        let none = || self.with_others.iter().map(|_| AtomicU64::new(NOT_FORMED)).collect();
+        let none = || self.with_others.iter().map(|_| Lazy::default()).collect();
         for &column in columns {
             self.with_others[column].get_or_init(none);
         }
     }
 
     /// The place where the product of two columns is stored; `None` if products of neither are stored.
-    fn place(&self, a: usize, b: usize) -> Option<&AtomicU64> {
+    fn place(&self, a: usize, b: usize) -> Option<&Lazy> {
         let of = |one: usize, other: usize| self.with_others[one].get().map(|row| &row[other]);
         of(b, a).or_else(|| of(a, b))
     }
@@ -119,9 +116,9 @@ impl Eliminated {
     /// Reads the products of the columns of a group with `other`; whether all of them are stored.
     fn stored(&self, group: &[usize], other: usize, products: &mut Lanes) -> bool {
         group.iter().zip(products).all(|(&column, product)| {
-            let bits = self.place(column, other).map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
-            *product = f64::from_bits(bits);
-            bits != NOT_FORMED
+            let stored = self.place(column, other).and_then(Lazy::get);
+            *product = stored.unwrap_or(f64::NAN);
+            stored.is_some()
         })
     }
 
@@ -186,17 +183,10 @@ impl Products {
                 None => full - dot(x, &eliminated.with_y),
             }
         };
-        let Some(place) = b.and_then(|b| eliminated.place(a, b)) else {
-            return form();
-        };
-        // The product has the same bits in every thread and in either order of the columns.
-        match place.load(Ordering::Relaxed) {
-            NOT_FORMED => {
-                let value = form();
-                place.store(value.to_bits(), Ordering::Relaxed);
-                value
-            }
-            bits => f64::from_bits(bits),
+        // The product has the same bits in either order of the columns.
+        match b.and_then(|b| eliminated.place(a, b)) {
+            Some(place) => place.get_or(form),
+            None => form(),
         }
     }
 
@@ -257,7 +247,7 @@ impl Products {
                 let value = self.product(table, &eliminated.scaled, column, Some(others[k])) - explained[lane];
                 products[k][lane] = value;
                 if let Some(place) = eliminated.place(column, others[k]) {
-                    place.store(value.to_bits(), Ordering::Relaxed);
+                    place.set(value);
                 }
             }
         }
@@ -282,11 +272,9 @@ impl Products {
         };
         let mut missing: Vec<usize> = Vec::with_capacity(others.len());
         for (k, &b) in others.iter().enumerate() {
-            let bits = eliminated.place(a, b).map_or(NOT_FORMED, |place| place.load(Ordering::Relaxed));
-            if bits == NOT_FORMED {
-                missing.push(k);
-            } else {
-                row[k] = f64::from_bits(bits);
+            match eliminated.place(a, b).and_then(Lazy::get) {
+                Some(value) => row[k] = value,
+                None => missing.push(k),
             }
         }
         if missing.is_empty() {
@@ -297,7 +285,7 @@ impl Products {
         for (&k, explained) in missing.iter().zip(dots_with(with(a), &columns)) {
             row[k] = self.product(table, &eliminated.scaled, a, Some(others[k])) - explained;
             if let Some(place) = eliminated.place(a, others[k]) {
-                place.store(row[k].to_bits(), Ordering::Relaxed);
+                place.set(row[k]);
             }
         }
     }

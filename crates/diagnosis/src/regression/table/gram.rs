@@ -1,22 +1,19 @@
 //! Inner products of columns over rows.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use faer::{Accum, Mat, MatRef, Par, linalg::matmul::matmul};
 use gp::release_vectors;
 
 use crate::lanes::dot_over;
+use crate::regression::lazy::Lazy;
 
 /// A column on all rows of a table, which copies of the table share.
 pub type SharedColumn = Arc<Vec<f64>>;
 
 /// The number of columns that are copied together for their inner products.
 const TOGETHER: usize = 64;
-
-/// Marks an inner product that is not formed yet: the bits of a NaN.
-const NOT_FORMED: u64 = u64::MAX;
 
 /// The rows of inner products.
 #[derive(Clone, Debug, Default)]
@@ -39,8 +36,8 @@ struct Row {
     formed: Vec<f64>,
     /// Whether those with all columns up to it are formed, as for a column of the background and in picked products.
     is_whole: bool,
-    /// The other ones, as bits, if they are sums over several recordings.
-    others: OnceLock<Box<[AtomicU64]>>,
+    /// The other ones, if they are sums over several recordings.
+    others: OnceLock<Box<[Lazy]>>,
 }
 
 impl Row {
@@ -81,7 +78,7 @@ impl Gram {
     }
 
     /// Whether they are known for all columns of a table of so many.
-    pub fn is_whole(&self, columns: usize) -> bool {
+    pub fn has_all(&self, columns: usize) -> bool {
         columns > 0 && self.right.len() == columns
     }
 
@@ -105,17 +102,9 @@ impl Gram {
             Over::Elsewhere => 0.0,
             Over::Runs(runs) => dot_over(runs, &self.rows[last].x, &self.rows[first].x),
             Over::All(parts) => {
-                let none = || (0..last).map(|_| AtomicU64::new(NOT_FORMED)).collect();
+                let none = || (0..last).map(|_| Lazy::default()).collect();
                 let place = &row.others.get_or_init(none)[first];
-                // The product has the same bits in every thread.
-                match place.load(Ordering::Relaxed) {
-                    NOT_FORMED => {
-                        let value = parts.iter().fold(0.0, |sum, part| sum + part.of(last, first));
-                        place.store(value.to_bits(), Ordering::Relaxed);
-                        value
-                    }
-                    bits => f64::from_bits(bits),
-                }
+                place.get_or(|| parts.iter().fold(0.0, |sum, part| sum + part.of(last, first)))
             }
         }
     }
@@ -163,7 +152,7 @@ impl Gram {
                 let formed = of_old.chain(of_new).chain([dot_over(&runs, &x[k], &x[k])]).collect();
                 self.number.push(None);
                 other += 1;
-                Row { formed, is_whole: false, ..Row::whole(Vec::new()) }
+                Row { is_whole: false, ..Row::whole(formed) }
             };
             self.rows.push(Arc::new(Row { x: Arc::clone(&x[k]), ..row }));
         }

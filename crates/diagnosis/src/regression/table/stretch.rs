@@ -57,7 +57,7 @@ impl Stretch {
 
     /// Inner products of the new ones among the columns `x` with y, and with the columns that are of the background.
     pub fn refresh(&mut self, x: &[SharedColumn], y: &[f64], is_of_background: &[bool]) {
-        if !self.gram.is_whole(x.len()) {
+        if !self.gram.has_all(x.len()) {
             Arc::make_mut(&mut self.gram).refresh(x, y, is_of_background);
         }
     }
