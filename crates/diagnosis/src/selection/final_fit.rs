@@ -272,8 +272,8 @@ fn opposed(study: &mut Study, judged: &Judged, members: &[&judge::Member]) -> Op
     Some((weaker, "wrong inertials explain nearly as much in the place of it and another effect", true))
 }
 
-/// Reduces the background, and removes findings, until no joint's held-out error is larger than the nominal model's. For errors
-/// at rest, which friction changes, only the background is reduced.
+/// Reduces the background, and removes findings, as long as that reduces the held-out error of a joint that is larger than the nominal
+/// model's. For errors at rest, which friction changes, only the background is reduced.
 fn guard(study: &mut Study, judged: &mut Judged) {
     loop {
         let (moving, resting) = harmed(study, &judged.named);
@@ -286,17 +286,10 @@ fn guard(study: &mut Study, judged: &mut Judged) {
             study.note_strengths(judge::HARMS, &judged.named, &next);
             judged.named = next;
         } else {
-            let Some(&joint) = moving.first() else { break };
             let products = study.training_products();
             let problem = study.problem(&products);
-            let acts = |member: &&judge::Member| {
-                study.candidates[member.candidate].joint.is_some() && member.shares[joint] > 0.0
-            };
-            let without = judged.members.iter().filter(acts).map(|member| {
-                let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
-                (fit_of(study, &next, joint).held_out_nrmse_augmented.unwrap_or(f64::INFINITY), next)
-            });
-            let Some((_, next)) = without.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            // If no removal helps, something else harms the joint.
+            let Some(next) = moving.iter().find_map(|&joint| without_what_harms(study, &problem, judged, joint)) else {
                 break;
             };
             study.note(judge::HARMS, &judged.named, &next);
@@ -305,6 +298,19 @@ fn guard(study: &mut Study, judged: &mut Judged) {
         let products = study.training_products();
         judged.members = judge::describe(&study.problem(&products), &judged.named);
     }
+}
+
+/// The named effects without the one on `joint` whose removal reduces the joint's held-out error most.
+fn without_what_harms(study: &Study, problem: &Problem<'_>, judged: &Judged, joint: usize) -> Option<Selection> {
+    let error = |selected: &Selection| fit_of(study, selected, joint).held_out_nrmse_augmented.unwrap_or(f64::INFINITY);
+    let acts =
+        |member: &&judge::Member| study.candidates[member.candidate].joint.is_some() && member.shares[joint] > 0.0;
+    let without = judged.members.iter().filter(acts).map(|member| {
+        let next = problem.choose(judged.named.others(member.candidate), &judged.named.fit.weights);
+        (error(&next), next)
+    });
+    let (least, next) = without.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (least < error(&judged.named)).then_some(next)
 }
 
 /// The fit of `joint` with `selected`.
@@ -330,9 +336,10 @@ fn harmed(study: &Study, selected: &Selection) -> (Vec<usize>, Vec<usize>) {
     (moving, resting)
 }
 
-/// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now. Errors at rest
-/// are included, because wrong links that explain the motion of some joints change the weight on joints at rest. A smaller background
-/// corrects less of one part on all joints, or no friction on the joints that are harmed in motion (`moving`) or at rest (`resting`).
+/// The smaller background with the smallest held-out errors of all joints together, if they are smaller than now and it harms no other
+/// joint in motion. Errors at rest are included, because wrong links that explain the motion of some joints change the weight on joints at
+/// rest. A smaller background corrects less of one part on all joints, or no friction on the joints that are harmed in motion (`moving`) or
+/// at rest (`resting`).
 fn better_outside(
     study: &Study,
     selected: &Selection,
@@ -347,22 +354,24 @@ fn better_outside(
         };
         (0..study.data.motions.dof).filter_map(of).sum::<f64>()
     };
+    let harms_another = |next: &Selection| harmed(study, next).0.iter().any(|joint| !moving.contains(joint));
     let is_corrected = |joint: &usize| study.strengths.friction_of(Some(*joint)) > 0.0;
-    let [moving, resting] =
+    let [in_motion, at_rest] =
         [moving, resting].map(|joints| joints.iter().copied().filter(is_corrected).collect::<Vec<_>>());
-    let mut harmed: Vec<Vec<usize>> = Vec::new();
-    let both = [&moving[..], &resting].concat();
-    for joints in [moving, both.clone()].into_iter().chain(both.iter().map(|&joint| vec![joint])) {
-        if !joints.is_empty() && !harmed.contains(&joints) {
-            harmed.push(joints);
+    let mut uncorrected: Vec<Vec<usize>> = Vec::new();
+    let both = [&in_motion[..], &at_rest].concat();
+    for joints in [in_motion, both.clone()].into_iter().chain(both.iter().map(|&joint| vec![joint])) {
+        if !joints.is_empty() && !uncorrected.contains(&joints) {
+            uncorrected.push(joints);
         }
     }
-    let on_joints = harmed.iter().map(|joints| study.strengths.without_friction_of(joints));
+    let on_joints = uncorrected.iter().map(|joints| study.strengths.without_friction_of(joints));
     let trials = on_joints.chain(study.stated.weaker(&study.strengths)).map(|strengths| {
         let products = study.products_at(&strengths);
         let next = study.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
         (loss(&next), strengths, next)
     });
+    let trials = trials.filter(|(_, _, next)| !harms_another(next));
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (best < loss(selected)).then_some((strengths, next))
 }
