@@ -29,6 +29,7 @@ pub mod naming;
 pub mod of_noise;
 pub mod payload;
 pub mod predict;
+mod resembling_links;
 mod restored;
 pub mod rivals;
 pub mod special_forms;

@@ -13,6 +13,7 @@ use crate::selection::gain::useless;
 use crate::selection::judge::{self, Judged};
 use crate::selection::payload::{self, possible::make_moments_possible, without_moment::without_moment};
 use crate::selection::predict::errors_with;
+use crate::selection::resembling_links::{in_place_of_links, links_are_wrong, opposed};
 use crate::selection::restored::{restore, take_back};
 use crate::selection::rivals::compared;
 use crate::selection::torque_constants;
@@ -78,7 +79,16 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                     drop_name(study, judged, payload, "it may have no moment about the tool's origin");
                 }
                 None if make_moments_possible(study, judged) => {}
-                None => return resampled,
+                None => match in_place_of_links(study, judged) {
+                    Some(effect) => {
+                        study.give_up(effect);
+                        let claim = study.claim(effect);
+                        let rule = "wrong links explain nearly as much in the place of such effects";
+                        drop_name(study, judged, effect, rule);
+                        take_back(study, judged, claim);
+                    }
+                    None => return resampled,
+                },
             },
         }
     }
@@ -241,35 +251,6 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
         Some((member.candidate, rule, is_inertial))
     });
     undecided.or_else(|| opposed(study, judged, &members))
-}
-
-/// Whether all links differ from the URDF. If most agree with it, one wrong link is an unlikely explanation. A URDF with placeholders is
-/// wrong.
-fn links_are_wrong(study: &Study) -> bool {
-    let preferred = study.preferred.as_ref().map_or(0.0, PriorStrengths::common);
-    study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders()
-}
-
-/// The weaker one of two effects that wrong inertial parameters resemble and that together have less evidence, against the background that
-/// fits best without them, than the one that needs more. Where they oppose each other, each seems necessary beside the other.
-fn opposed(study: &mut Study, judged: &Judged, members: &[&judge::Member]) -> Option<(usize, &'static str, bool)> {
-    if !links_are_wrong(study) {
-        return None;
-    }
-    let resembles = |member: &&&judge::Member| {
-        let candidate = &study.candidates[member.candidate];
-        candidate.hypothesis.spec().may_be_inertial && candidate.joint.is_some() && study.always_acts(member.candidate)
-    };
-    let group: Vec<usize> = members.iter().filter(resembles).map(|member| member.candidate).collect();
-    let mut pairs = group.iter().enumerate().flat_map(|(k, &a)| group[k + 1..].iter().map(move |&b| [a, b]));
-    let least = |study: &Study, pair: &[usize; 2]| {
-        let of = |&member: &usize| study.candidates[member].hypothesis.spec().least_beside_inertials;
-        pair.iter().filter_map(of).reduce(f64::max)
-    };
-    let [weaker, _] = pairs.find(|pair| {
-        least(study, pair).is_some_and(|least| study.evidence_beside_best_background(&judged.named, pair) < least)
-    })?;
-    Some((weaker, "wrong inertials explain nearly as much in the place of it and another effect", true))
 }
 
 /// Reduces the background, and removes findings, as long as that reduces the held-out error of a joint that is larger than the nominal

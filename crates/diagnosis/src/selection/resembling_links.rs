@@ -1,0 +1,52 @@
+//! Effects that wrong inertial parameters resemble, judged beside links that may be wrong.
+
+use crate::regression::strengths::PriorStrengths;
+use crate::search::study::Study;
+use crate::selection::judge::{self, Judged};
+use crate::thresholds::LEAST_BESIDE_EXACT_LINKS;
+
+/// The weakest one of the effects that wrong inertial parameters resemble, where all links are exact with them, and wrong links explain
+/// nearly as much without them: two or three may take the place of many small errors, each with a size that seems certain. A payload alone
+/// is no such effect, because the last link always resembles it.
+pub fn in_place_of_links(study: &mut Study, judged: &Judged) -> Option<usize> {
+    let mut members: Vec<&judge::Member> = judged.members.iter().collect();
+    members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let group = resembling_links(study, &members);
+    let weakest = *group.first()?;
+    if links_are_wrong(study) || study.stated.links.is_some() || group.iter().all(|&c| study.is_payload(c)) {
+        return None;
+    }
+    (study.evidence_beside_best_background(&judged.named, &group) < LEAST_BESIDE_EXACT_LINKS).then_some(weakest)
+}
+
+/// The effects that act in all recordings and that wrong inertial parameters resemble.
+fn resembling_links(study: &Study, members: &[&judge::Member]) -> Vec<usize> {
+    let of = members.iter().map(|member| member.candidate);
+    of.filter(|&c| study.candidates[c].hypothesis.spec().may_be_inertial && study.always_acts(c)).collect()
+}
+
+/// Whether all links differ from the URDF. If most agree with it, one wrong link is an unlikely explanation. A URDF with placeholders is
+/// wrong.
+pub fn links_are_wrong(study: &Study) -> bool {
+    let preferred = study.preferred.as_ref().map_or(0.0, PriorStrengths::common);
+    study.strengths.common().max(preferred) > 0.0 || study.strengths.has_placeholders()
+}
+
+/// The weaker one of two effects that wrong inertial parameters resemble and that together have less evidence, against the background that
+/// fits best without them, than the one that needs more. Where they oppose each other, each seems necessary beside the other.
+pub fn opposed(study: &mut Study, judged: &Judged, members: &[&judge::Member]) -> Option<(usize, &'static str, bool)> {
+    if !links_are_wrong(study) {
+        return None;
+    }
+    let mut group = resembling_links(study, members);
+    group.retain(|&c| study.candidates[c].joint.is_some());
+    let mut pairs = group.iter().enumerate().flat_map(|(k, &a)| group[k + 1..].iter().map(move |&b| [a, b]));
+    let least = |study: &Study, pair: &[usize; 2]| {
+        let of = |&member: &usize| study.candidates[member].hypothesis.spec().least_beside_inertials;
+        pair.iter().filter_map(of).reduce(f64::max)
+    };
+    let [weaker, _] = pairs.find(|pair| {
+        least(study, pair).is_some_and(|least| study.evidence_beside_best_background(&judged.named, pair) < least)
+    })?;
+    Some((weaker, "wrong inertials explain nearly as much in the place of it and another effect", true))
+}
