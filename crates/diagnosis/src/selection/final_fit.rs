@@ -25,7 +25,8 @@ use crate::thresholds::{
 };
 
 /// Fits the named effects about the arm that contains them, including the rows near reversals. Removes effects that increase the
-/// held-out error of a joint, effects that do not reduce it, and effects with little evidence whose size may be zero.
+/// held-out error of a joint, effects that do not reduce it, effects with little evidence whose size may be zero, and effects that the
+/// background explains nearly as well.
 pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
     let mut constants_tried = Vec::new();
     let (mut harmful_friction, mut restored): (Vec<usize>, Vec<usize>) = Default::default();
@@ -83,7 +84,8 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                     Some(effect) => {
                         study.give_up(effect);
                         let claim = study.claim(effect);
-                        let rule = "wrong links explain nearly as much in the place of such effects";
+                        let rule =
+                            "the background explains nearly as much in its place and that of others that resemble it";
                         drop_name(study, judged, effect, rule);
                         take_back(study, judged, claim);
                     }
@@ -281,7 +283,8 @@ fn guard(study: &mut Study, judged: &mut Judged) {
     }
 }
 
-/// The named effects without the one on `joint` whose removal reduces the joint's held-out error most.
+/// The named effects without the one that acts on `joint` and whose removal reduces the joint's held-out error most; `None` if none reduces it
+/// by more than an effect of another joint may cause.
 fn without_what_harms(study: &Study, problem: &Problem<'_>, judged: &Judged, joint: usize) -> Option<Selection> {
     let error = |selected: &Selection| fit_of(study, selected, joint).held_out_nrmse_augmented.unwrap_or(f64::INFINITY);
     let acts =
@@ -291,7 +294,7 @@ fn without_what_harms(study: &Study, problem: &Problem<'_>, judged: &Judged, joi
         (error(&next), next)
     });
     let (least, next) = without.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (least < error(&judged.named)).then_some(next)
+    judge::harms(least, error(&judged.named)).then_some(next)
 }
 
 /// The fit of `joint` with `selected`.

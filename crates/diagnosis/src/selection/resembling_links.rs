@@ -5,9 +5,10 @@ use crate::search::study::Study;
 use crate::selection::judge::{self, Judged};
 use crate::thresholds::LEAST_BESIDE_EXACT_LINKS;
 
-/// The weakest one of the effects that wrong inertial parameters resemble, where all links are exact with them, and wrong links explain
-/// nearly as much without them: two or three may take the place of many small errors, each with a size that seems certain. A payload alone
-/// is no such effect, because the last link always resembles it.
+/// The weakest one of the effects that wrong inertial parameters resemble, if the best background without them explains nearly as much, and
+/// not all links differ from the URDF beside them. One to three such effects may take the place of many small errors of the links, each with a
+/// size that seems certain. Only the group is tested: a strong effect in it also keeps a weak one. A payload alone is not tested, because the
+/// last link always resembles it.
 pub fn in_place_of_links(study: &mut Study, judged: &Judged) -> Option<usize> {
     let mut members: Vec<&judge::Member> = judged.members.iter().collect();
     members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));

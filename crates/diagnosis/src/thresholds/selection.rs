@@ -107,9 +107,9 @@ pub const USUAL_VARIATION: f64 = 0.2;
 /// The evidence of a payload beside links of which only some differ from the URDF, compared with links that all do (nats). Source: two
 /// simulated arms without a payload whose links are all wrong, where it was 6 and 22.
 pub const LEAST_BESIDE_SOME_LINKS: f64 = 30.0;
-/// The evidence that effects which resemble wrong inertial parameters need together where no link differs from the URDF, compared with the
-/// best background of links without them (nats). Source: 43 such cases of `prove` (three seeds) and of two other simulators: false ones
-/// have 3, 9, 11 and 13, true ones 12 and, except for one link that was wrong in addition, 17 or more.
+/// The evidence that effects which resemble wrong inertial parameters need together where not all links differ from the URDF, compared with
+/// the best background without them (nats). Source: 43 such cases of `prove` (three seeds) and of two other simulators: false ones have 3.3,
+/// 9.2, 10.7 and 12.8; true ones have 3.7 and 11.5, which are lost, and 17.1 or more.
 pub const LEAST_BESIDE_EXACT_LINKS: f64 = 13.0;
 /// The search is not repeated once the final fit has refused more than this number of names. Source: none; it bounds the time.
 pub const MOST_REFUSED: usize = 3;

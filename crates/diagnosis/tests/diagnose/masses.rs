@@ -3,17 +3,18 @@
 use std::cell::Cell;
 
 use crate::support::{
-    Injected, Motion, TRIO, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, sentences, trio,
+    Injected, Motion, TRIO, baseline_friction, diagnosed, diagnosed_with, exports_what_it_reports, named as special,
+    sentences, trio, uniform,
 };
 use arm::{Arm, Inertia, Joint, Matrix3, Vector3, Workspace};
-use diagnosis::{Diagnosis, Options};
+use diagnosis::{Decision, Diagnosis, Options};
 use effects::arm::{PAYLOAD, exists, payload_body};
 
 /// The findings beside plain friction: effect and joint.
 fn named(robot: &Arm, injected: Injected<'_>) -> Vec<(String, Option<String>)> {
     let diagnosis = diagnosed(&trio(), robot, injected, Vec::new());
     let owned = |(effect, joint)| of(effect, joint);
-    let mut special: Vec<_> = crate::support::named(&diagnosis).into_iter().map(owned).collect();
+    let mut special: Vec<_> = special(&diagnosis).into_iter().map(owned).collect();
     special.sort();
     assert!(diagnosis.report.unexplained.is_empty(), "{:?}", sentences(&diagnosis));
     special
@@ -74,7 +75,7 @@ fn exact_torque_constants_name_each_scale_once() {
     };
     let options = Options { torque_accuracy: Some(0.0), ..Options::default() };
     let diagnosis = diagnosed_with(&trio(), &trio(), &injected, &options).expect("it can be diagnosed");
-    assert_eq!(crate::support::named(&diagnosis), [("torque_scale", Some("shoulder"))], "{:?}", sentences(&diagnosis));
+    assert_eq!(special(&diagnosis), [("torque_scale", Some("shoulder"))], "{:?}", sentences(&diagnosis));
 }
 
 /// A forearm that is too heavy for the URDF hides most of a torque constant of the shoulder that is too small. The recordings determine
@@ -118,7 +119,7 @@ fn a_centre_of_mass_off_is_named_on_its_link() {
         let robot = trio().with_link_inertia(link, body);
         let diagnosis = diagnosed(&trio(), &robot, &|motion, tau| baseline_friction(motion, tau), Vec::new());
         let name = trio().joints()[link].name.clone();
-        let found = crate::support::named(&diagnosis);
+        let found = special(&diagnosis);
         assert_eq!(found, [("inertial_parameters", Some(name.as_str()))], "{:?}", sentences(&diagnosis));
         let com = &diagnosis.report.inertials[&name].parameters;
         for (key, nominal, off) in [
@@ -310,7 +311,7 @@ fn a_placeholder_is_not_believed() {
     let believed = placeholder(placeholder(robot.clone(), crate::support::SHOULDER), crate::support::ELBOW);
     let friction = |motion: &mut Motion, tau: &mut [f64]| baseline_friction(motion, tau);
     let diagnosis = diagnosed(&believed, &robot, &friction, Vec::new());
-    let named = crate::support::named(&diagnosis);
+    let named = special(&diagnosis);
     assert!(named.iter().all(|(effect, _)| *effect == "inertial_parameters"), "{named:?}");
     let remarks = diagnosis.remarks.join("; ");
     assert!(remarks.contains("exactly at the joint on upper and fore"), "{remarks}");
@@ -336,7 +337,7 @@ fn a_link_without_mass_is_named_and_its_neighbours_are_not() {
         let believed = TRIO.replace(mass, &mass.replace('5', missing));
         let believed = Arm::from_urdf_text(&believed, "massless.urdf").expect("it is an arm");
         let diagnosis = diagnosed(&believed, &trio(), &|motion, tau| baseline_friction(motion, tau), Vec::new());
-        assert_eq!(crate::support::named(&diagnosis), [("inertial_parameters", Some("shoulder"))], "{missing}");
+        assert_eq!(special(&diagnosis), [("inertial_parameters", Some("shoulder"))], "{missing}");
         let found = &diagnosis.report.inertials["shoulder"].parameters["mass"];
         assert!(found.ci95[0] <= 5.0 && found.ci95[1] >= 5.0, "{found:?}");
         let notes = diagnosis.remarks.join("; ");
@@ -344,17 +345,16 @@ fn a_link_without_mass_is_named_and_its_neighbours_are_not() {
     }
 }
 
-/// All links differ from the URDF, and noise hides most of that: one or two effects explain hardly more in their place, and have no name.
+/// All links differ from the URDF by 10 %, and noise hides most of that. One or two effects (a factor on a link, an encoder offset, a spring)
+/// explain it with 3 to 13 nats more: they have no name.
 #[test]
 fn links_that_are_all_wrong_are_no_single_effect() {
-    let uniform = |state: &Cell<u64>| {
-        state.set(state.get() * 48_271 % 2_147_483_647);
-        state.get() as f64 / 2_147_483_647.0 - 0.5
-    };
+    let mut dropped = 0;
     for seed in [8, 17, 19, 23] {
         let drawn = Cell::new(seed * 7919);
         // Of a standard deviation of one.
         let random = || 3.4 * uniform(&drawn);
+        // The first numbers are small, as is the seed.
         for _ in 0..5 {
             random();
         }
@@ -373,8 +373,10 @@ fn links_that_are_all_wrong_are_no_single_effect() {
             tau.iter_mut().for_each(|tau| *tau += uniform(&noise));
         };
         let diagnosis = diagnosed(&trio().with_inertias(&wrong), &trio(), &injected, Vec::new());
-        let is_special = |name: &&(&str, Option<&str>)| name.0 != "inertial_parameters";
-        let names = crate::support::named(&diagnosis);
-        assert_eq!(names.iter().find(is_special), None, "{seed}: {:?}", sentences(&diagnosis));
+        let names = special(&diagnosis);
+        assert!(names.iter().all(|name| *name == ("inertial_parameters", None)), "{seed}: {:?}", sentences(&diagnosis));
+        let is_rule = |decision: &&Decision| decision.rule.starts_with("the background explains nearly as much");
+        dropped += diagnosis.trace.iter().filter(is_rule).count();
     }
+    assert!(dropped >= 2, "the effects were not found: {dropped}");
 }

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 use arm::{Arm, Workspace};
@@ -108,6 +109,12 @@ fn normal(state: &mut u64) -> f64 {
         (z >> 11) as f64 / (1_u64 << 53) as f64
     };
     (0..12).map(|_| uniform(state)).sum::<f64>() - 6.0
+}
+
+/// Uniform noise between −0.5 and 0.5, of a multiplicative congruential generator (Lehmer).
+pub fn uniform(state: &Cell<u64>) -> f64 {
+    state.set(state.get() * 48_271 % 2_147_483_647);
+    state.get() as f64 / 2_147_483_647.0 - 0.5
 }
 
 /// The recording on its clock.
