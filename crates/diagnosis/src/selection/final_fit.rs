@@ -56,9 +56,7 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
             if is_inertial {
                 study.give_up(undecided);
             }
-            let claim = study.claim(undecided);
-            drop_name(study, judged, undecided, rule);
-            take_back(study, judged, claim);
+            drop_and_take_back(study, judged, undecided, rule);
             continue;
         }
         let resampled = resample(study, &judged.named);
@@ -83,11 +81,9 @@ pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
                 None => match in_place_of_links(study, judged) {
                     Some(effect) => {
                         study.give_up(effect);
-                        let claim = study.claim(effect);
                         let rule =
                             "the background explains nearly as much in its place and that of others that resemble it";
-                        drop_name(study, judged, effect, rule);
-                        take_back(study, judged, claim);
+                        drop_and_take_back(study, judged, effect, rule);
                     }
                     None => return resampled,
                 },
@@ -114,6 +110,13 @@ fn drop_name(study: &mut Study, judged: &mut Judged, candidate: usize, rule: &'s
     study.note(rule, &judged.named, &next);
     judged.named = next;
     judged.members = judge::describe(&problem, &judged.named);
+}
+
+/// Removes one name, and takes back the effect that the search had exchanged for it.
+fn drop_and_take_back(study: &mut Study, judged: &mut Judged, candidate: usize, rule: &'static str) {
+    let claim = study.claim(candidate);
+    drop_name(study, judged, candidate, rule);
+    take_back(study, judged, claim);
 }
 
 fn refit(study: &Study, problem: &Problem<'_>, judged: &mut Judged, set: Vec<usize>) {
@@ -194,9 +197,7 @@ fn prove(study: &mut Study, judged: &mut Judged) {
 
 /// Removes the effects on joints whose torque is predicted worse than by a constant: such a channel measures something else.
 fn give_up(study: &mut Study, judged: &mut Judged) {
-    let fits: Vec<JointFit> = (0..study.data.motions.dof)
-        .map(|joint| errors_with(&study.data, &study.table, &judged.named.fit, joint))
-        .collect();
+    let fits = fits_of(study, &judged.named);
     let is_hopeless = |joint: usize| fits[joint].error() > HOPELESS;
     // Friction that explains a part of the training recordings is present in any case.
     let stays = |&candidate: &usize| {
@@ -218,8 +219,7 @@ fn give_up(study: &mut Study, judged: &mut Judged) {
 /// parameters resemble it, and its evidence against the background that fits best without it is small.
 fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str, bool)> {
     let products = study.training_products();
-    let mut members: Vec<&judge::Member> = judged.members.iter().collect();
-    members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
+    let members = judged.weakest_first();
     let mut rule = |member: &judge::Member| {
         let hypothesis = study.candidates[member.candidate].hypothesis;
         if !hypothesis.spec().is_baseline
@@ -259,7 +259,7 @@ fn undecided(study: &mut Study, judged: &Judged) -> Option<(usize, &'static str,
 /// model's. For errors at rest, which friction changes, only the background is reduced.
 fn guard(study: &mut Study, judged: &mut Judged) {
     loop {
-        let (moving, resting) = harmed(study, &judged.named);
+        let (moving, resting) = harmed(&fits_of(study, &judged.named));
         if moving.is_empty() && resting.is_empty() {
             break;
         }
@@ -302,14 +302,18 @@ fn fit_of(study: &Study, selected: &Selection, joint: usize) -> JointFit {
     errors_with(&study.data, &study.table, &selected.fit, joint)
 }
 
-/// The joints whose held-out error in motion is larger with `selected` than with the nominal model, and those whose error at rest is.
-fn harmed(study: &Study, selected: &Selection) -> (Vec<usize>, Vec<usize>) {
+/// The fits of all joints with `selected`.
+fn fits_of(study: &Study, selected: &Selection) -> Vec<JointFit> {
+    (0..study.data.motions.dof).map(|joint| fit_of(study, selected, joint)).collect()
+}
+
+/// The joints whose held-out error in motion is larger with these fits than with the nominal model, and those whose error at rest is.
+fn harmed(fits: &[JointFit]) -> (Vec<usize>, Vec<usize>) {
     let is_worse = |nominal: Option<f64>, augmented: Option<f64>| {
         nominal.zip(augmented).is_some_and(|(nominal, augmented)| judge::harms(nominal, augmented))
     };
     let (mut moving, mut resting) = (Vec::new(), Vec::new());
-    for joint in 0..study.data.motions.dof {
-        let fit = fit_of(study, selected, joint);
+    for (joint, fit) in fits.iter().enumerate() {
         if is_worse(fit.held_out_nrmse_nominal, fit.held_out_nrmse_augmented) {
             moving.push(joint);
         }
@@ -330,15 +334,13 @@ fn better_outside(
     moving: &[usize],
     resting: &[usize],
 ) -> Option<(PriorStrengths, Selection)> {
-    let loss = |selected: &Selection| {
-        let of = |joint: usize| {
-            let fit = fit_of(study, selected, joint);
+    let loss = |fits: &[JointFit]| {
+        let of = |fit: &JointFit| {
             let error = fit.held_out_nrmse_augmented?.hypot(fit.held_out_nrmse_resting.unwrap_or(0.0));
             Some(error.max(f64::MIN_POSITIVE).ln())
         };
-        (0..study.data.motions.dof).filter_map(of).sum::<f64>()
+        fits.iter().filter_map(of).sum::<f64>()
     };
-    let harms_another = |next: &Selection| harmed(study, next).0.iter().any(|joint| !moving.contains(joint));
     let is_corrected = |joint: &usize| study.strengths.friction_of(Some(*joint)) > 0.0;
     let [in_motion, at_rest] =
         [moving, resting].map(|joints| joints.iter().copied().filter(is_corrected).collect::<Vec<_>>());
@@ -350,12 +352,13 @@ fn better_outside(
         }
     }
     let on_joints = uncorrected.iter().map(|joints| study.strengths.without_friction_of(joints));
-    let trials = on_joints.chain(study.stated.weaker(&study.strengths)).map(|strengths| {
+    let trials = on_joints.chain(study.stated.weaker(&study.strengths)).filter_map(|strengths| {
         let products = study.products_at(&strengths);
         let next = study.problem(&products).choose(selected.set.clone(), &selected.fit.weights);
-        (loss(&next), strengths, next)
+        let fits = fits_of(study, &next);
+        let harms_another = harmed(&fits).0.iter().any(|joint| !moving.contains(joint));
+        (!harms_another).then(|| (loss(&fits), strengths, next))
     });
-    let trials = trials.filter(|(_, _, next)| !harms_another(next));
     let (best, strengths, next) = trials.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best < loss(selected)).then_some((strengths, next))
+    (best < loss(&fits_of(study, selected))).then_some((strengths, next))
 }

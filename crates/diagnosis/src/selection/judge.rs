@@ -67,6 +67,13 @@ impl Judged {
         let unmodelled = self.unmodelled.iter().map(|member| member.candidate);
         self.named.set.iter().copied().chain(unmodelled).collect()
     }
+
+    /// The named effects in the order of their evidence.
+    pub fn weakest_first(&self) -> Vec<&Member> {
+        let mut members: Vec<&Member> = self.members.iter().collect();
+        members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
+        members
+    }
 }
 
 /// Judges `selected`; `held` are the products of the held-out recordings, if there are any.

@@ -10,9 +10,7 @@ use crate::thresholds::LEAST_BESIDE_EXACT_LINKS;
 /// size that seems certain. Only the group is tested: a strong effect in it also keeps a weak one. A payload alone is not tested, because the
 /// last link always resembles it.
 pub fn in_place_of_links(study: &mut Study, judged: &Judged) -> Option<usize> {
-    let mut members: Vec<&judge::Member> = judged.members.iter().collect();
-    members.sort_by(|a, b| a.evidence.total_cmp(&b.evidence));
-    let group = resembling_links(study, &members);
+    let group = resembling_links(study, &judged.weakest_first());
     let weakest = *group.first()?;
     if links_are_wrong(study) || study.stated.links.is_some() || group.iter().all(|&c| study.is_payload(c)) {
         return None;
