@@ -13,6 +13,8 @@ pub struct Scales {
     pub middle: Vec<f64>,
     /// The difference of the highest and the lowest position (rad or m).
     pub range: Vec<f64>,
+    /// The same of the training recordings alone, while the joint moves (rad or m).
+    pub swept: Vec<f64>,
     /// The standard deviation of the measured torque (N m or N).
     pub torque: Vec<f64>,
 }

@@ -132,6 +132,7 @@ pub fn along<T>(visit: impl FnOnce(&Signals<'_>) -> T) -> T {
         speed: vec![2.0; 2],
         rest: vec![1e-9; 2],
         turning: vec![3e-10; 2],
+        swept: vec![2.0; 2],
         middle: vec![0.0; 2],
         range: vec![2.0; 2],
         torque: vec![1.0; 2],

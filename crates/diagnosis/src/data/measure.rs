@@ -187,6 +187,7 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
         turning: Vec::new(),
         middle: Vec::new(),
         range: Vec::new(),
+        swept: Vec::new(),
         torque,
     };
     for joint in 0..motions.dof {
@@ -201,8 +202,21 @@ pub fn scales(motions: &Motions, torque: Vec<f64>) -> Scales {
             (quantile_of_sorted(&positions, RANGE_QUANTILES.0), quantile_of_sorted(&positions, RANGE_QUANTILES.1));
         scales.middle.push(0.5 * (low + high));
         scales.range.push((high - low).max(1e-6));
+        scales.swept.push(swept(motions, joint, scales.rest[joint]));
     }
     scales
+}
+
+/// The difference of the highest and the lowest position of a joint in the training recordings while it is faster than `rest` (rad or m).
+fn swept(motions: &Motions, joint: usize, rest: f64) -> f64 {
+    let fitted = motions.chunks.iter().filter(|chunk| is_fitted(motions, chunk));
+    let ends = fitted
+        .flat_map(|chunk| chunk.q[joint].iter().zip(&chunk.qd[joint]))
+        .filter(|(_, qd)| qd.abs() > rest)
+        .fold(None, |ends: Option<(f64, f64)>, (&q, _)| {
+            Some(ends.map_or((q, q), |(low, high)| (low.min(q), high.max(q))))
+        });
+    ends.map_or(0.0, |(low, high)| high - low)
 }
 
 /// The time between rows of each recording (s).

@@ -180,7 +180,7 @@ fn resize_once(
         if round == 0 {
             list.extend(first_sizes(study, member));
         }
-        list.retain(|terms| study.is_brief(terms));
+        list.retain(|terms| study.is_brief(terms) && study.repeats(terms));
         for &term in list.iter().flatten() {
             if !study.table.terms.contains(&term) && !missing.contains(&term) {
                 missing.push(term);

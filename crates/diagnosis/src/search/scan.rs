@@ -136,7 +136,7 @@ pub fn ripples(
     let usual = RIPPLE_SPEED * scales.speed[joint];
     let most_periods = (2.0 * std::f64::consts::PI * motions.cutoff / usual).min(MOST_RIPPLE_PERIODS);
     let step = 1.5 / range;
-    let least = LEAST_RIPPLE_PHASE / range;
+    let least = LEAST_RIPPLE_PHASE / scales.swept[joint].clamp(1e-6, range);
     let at = |samples: &[Sample], periods: f64| {
         power(samples, |sample| {
             // The filter weakens fast ripples.
@@ -148,7 +148,11 @@ pub fn ripples(
     let every = samples.len().div_ceil(MOST_SAMPLES).max(1);
     let coarse: Vec<Sample> = samples.iter().step_by(every).copied().collect();
     let values = spectrum(&coarse, motions.chunks[0].kernel.width(), least, step, count);
-    peaks(least, step, &values, most, |periods| at(&samples, periods))
+    // A maximum at the lower end is that of a slower function of the position, and takes no other's place.
+    let mut found = peaks(least, step, &values, most + 1, |periods| at(&samples, periods));
+    found.retain(|&periods| periods >= least);
+    found.truncate(most);
+    found
 }
 
 #[derive(Clone, Copy)]

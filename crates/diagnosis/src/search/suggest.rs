@@ -3,14 +3,16 @@
 use effects::arm::{EXTERNAL_CONTACT, PAYLOAD, contact_columns, contact_window};
 use effects::drive::{TORQUE_RIPPLE, ripple_columns};
 use effects::unmodelled::{PERIODIC, periodic_columns};
-use effects::{Spec, Term};
+use effects::{Size, Spec, Term};
 use rayon::prelude::*;
 
 use crate::search::candidate::Hypothesis;
 use crate::search::problem::Selection;
 use crate::search::scan;
 use crate::search::study::Study;
-use crate::thresholds::{MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES, OF_THE_SAME_LOAD};
+use crate::thresholds::{
+    LEAST_RIPPLE_PHASE, MOST_CONTACTS, MOST_OF_A_RECORDING, MOST_RIPPLES, MOST_WAVES, OF_THE_SAME_LOAD,
+};
 
 impl Study {
     /// Adds the candidates that the residual of `selected` suggests.
@@ -83,6 +85,16 @@ impl Study {
         for (hypothesis, joint, terms) in new {
             self.add(hypothesis, joint, terms);
         }
+    }
+
+    /// Whether ripples among terms repeat several times within the joint's motion. One that does not is no ripple, but any function of the
+    /// position.
+    pub fn repeats(&self, terms: &[Term]) -> bool {
+        terms.iter().all(|term| {
+            let swept = term.joint.map_or(f64::INFINITY, |joint| self.data.scales.swept[joint]);
+            let periods = term.law.sizes.iter().find(|(size, _)| *size == Size::Periods);
+            periods.is_none_or(|&(_, at)| term.sizes[at] * swept >= LEAST_RIPPLE_PHASE)
+        })
     }
 
     /// Whether terms are not a contact, or are a contact that is short in comparison with its recording.

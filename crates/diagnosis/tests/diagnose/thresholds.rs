@@ -13,7 +13,7 @@ fn spring(motion: &mut Motion, tau: &mut [f64]) {
 /// A small ripple beside the spring.
 fn spring_and_ripple(motion: &mut Motion, tau: &mut [f64]) {
     spring(motion, tau);
-    tau[SHOULDER] += 0.6 * (13.0 * motion.q[SHOULDER]).sin();
+    tau[SHOULDER] += 0.6 * (17.0 * motion.q[SHOULDER]).sin();
 }
 
 /// A small ripple beside a wrong torque constant, an effect of certain form.

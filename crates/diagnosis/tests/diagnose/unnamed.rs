@@ -206,3 +206,18 @@ fn a_moment_that_is_unexplained_is_repeated() {
     assert!(open.time.iter().all(|window| window.start > 2005.5 && window.end < 2007.0), "{open:?}");
     assert!(open.next.starts_with("repeat the motion at "), "{open:?}");
 }
+
+/// A torque that depends on the position and repeats less than three times within the motion of the joint is no ripple; one that repeats
+/// more often is.
+#[test]
+fn a_ripple_repeats_within_the_motion() {
+    let is_ripple = |periods: f64| {
+        let injected = |motion: &mut Motion, tau: &mut [f64]| {
+            baseline_friction(motion, tau);
+            tau[TURN] += 0.4 * (periods * motion.q[TURN] + 0.5).sin();
+        };
+        effects_on(&diagnosed(&trio(), &trio(), &injected, Vec::new()), "turn").contains(&"torque_ripple")
+    };
+    assert!(is_ripple(14.0));
+    assert!(!is_ripple(9.0));
+}
