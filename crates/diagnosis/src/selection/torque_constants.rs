@@ -3,7 +3,7 @@
 use effects::arm::INERTIAL_SCALE;
 use effects::sensor::TORQUE_SCALE;
 
-use crate::search::problem::Selection;
+use crate::search::problem::{Problem, Selection};
 use crate::search::study::Study;
 use crate::selection::bootstrap::resample;
 use crate::selection::constant_torques;
@@ -50,9 +50,11 @@ pub fn name_those_beyond_tolerance(study: &mut Study, judged: &mut Judged, tried
         let set = [&judged.named.set[..], &[scale]].concat();
         keep_named_ones(study, &set);
         let products = study.training_products();
-        let next = study.problem(&products).choose(set, &judged.named.fit.weights);
+        let problem = study.problem(&products);
+        let next = problem.choose(set, &judged.named.fit.weights);
+        let is_explained_better = is_explained_better(&problem, &next, scale);
         // Wrong inertial parameters of all links resemble wrong torque constants of all drives.
-        if is_clear(study, &next, scale) {
+        if !is_explained_better && is_clear(study, &next, scale) {
             study.note("its torque constant is beyond the usual tolerance", &judged.named, &next);
             judged.members = judge::describe(&study.problem(&products), &next);
             judged.named = next;
@@ -174,6 +176,16 @@ fn are_alike(deviations: &[f64], least: f64) -> bool {
     let count = |sign: f64| deviations.iter().filter(|&&deviation| sign * deviation >= least).count();
     let most = count(1.0).max(count(-1.0));
     most >= LEAST_ALIKE && 2 * most > deviations.len()
+}
+
+/// Whether an unmodelled form on the joint of the torque scale `scale`, such as a wrong scale of its position, explains more in its place.
+fn is_explained_better(problem: &Problem<'_>, selected: &Selection, scale: usize) -> bool {
+    let joint = problem.candidates[scale].joint;
+    let is_form =
+        |&c: &usize| problem.candidates[c].hypothesis.name().is_none() && problem.candidates[c].joint == joint;
+    let others = selected.others(scale);
+    let mut forms = (0..problem.candidates.len()).filter(is_form);
+    forms.any(|form| problem.choose([&others[..], &[form]].concat(), &selected.fit.weights).score < selected.score)
 }
 
 /// Whether the interval of a torque scale of `selected` excludes one.
