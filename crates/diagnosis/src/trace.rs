@@ -17,6 +17,8 @@ pub enum Action {
     Background,
     /// The search begins again with torques without their lag.
     Lag,
+    /// The rows of a joint count less in the final fit.
+    Memory,
 }
 
 impl fmt::Display for Action {
@@ -27,6 +29,7 @@ impl fmt::Display for Action {
             Self::Dropped => "dropped",
             Self::Background => "background",
             Self::Lag => "lag",
+            Self::Memory => "memory",
         })
     }
 }
@@ -38,7 +41,8 @@ pub struct Decision {
     pub step: usize,
     /// The decision.
     pub action: Action,
-    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a lag, its length.
+    /// The name of the effect or of the unmodelled form, and whether it begins or ends; for a background, its strengths; for a lag, its length; for
+    /// a memory, how many pieces of evidence count as one.
     pub effect: String,
     /// The joint; `None` for the whole arm.
     pub joint: Option<String>,

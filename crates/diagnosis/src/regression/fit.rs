@@ -137,6 +137,12 @@ impl Products {
         Self { background: background.map(Arc::new), eliminated: Arc::default(), ..self.clone() }
     }
 
+    /// These products, without background, with the pieces of evidence of a joint divided by its `memory`.
+    pub fn remembering(mut self, memory: &[f64]) -> Self {
+        self.evidence.iter_mut().zip(memory).for_each(|(evidence, memory)| *evidence /= memory);
+        self
+    }
+
     /// Whether there is a background that corrects the model, beside the lag of the torques.
     pub fn has_background(&self) -> bool {
         self.background.as_ref().is_some_and(|background| !background.is_lag_alone)

@@ -31,6 +31,7 @@ mod formed;
 mod friction_changes;
 mod linearisation_point;
 mod links;
+mod memory;
 mod notes;
 mod on_links;
 mod own_friction;
@@ -81,6 +82,8 @@ pub struct Study {
     pub trace: Trace,
     /// The inner products of the present table.
     formed: Formed,
+    /// How many pieces of evidence are worth one, one per joint, because its residual remembers.
+    memory: Vec<f64>,
     /// Hypotheses that the final fit refused, and whether they always act; they are not searched again.
     refused: Vec<Claim>,
     /// The evidence, by joint, for the name of a constant torque that always acts, if the differences between recordings decide whether
@@ -262,6 +265,7 @@ impl Study {
             load_tensor: Matrix3::zeros(),
             trace: Trace::default(),
             formed: Formed::default(),
+            memory: vec![1.0; data.motions.dof],
             refused: Vec::new(),
             exchanged: Vec::new(),
             given_up: Vec::new(),

@@ -14,7 +14,7 @@ use crate::selection::judge::{self, Judged};
 use crate::selection::payload::{self, possible::make_moments_possible, without_moment::without_moment};
 use crate::selection::predict::errors_with;
 use crate::selection::resembling_links::{in_place_of_links, links_are_wrong, opposed};
-use crate::selection::restored::{restore, take_back};
+use crate::selection::restored::{add_constants, restore, take_back};
 use crate::selection::rivals::compared;
 use crate::selection::torque_constants;
 use crate::selection::unclear::{Unclear, unclear};
@@ -30,9 +30,20 @@ use crate::thresholds::{
 pub fn confirmed(study: &mut Study, judged: &mut Judged) -> Resampled {
     let mut constants_tried = Vec::new();
     let (mut harmful_friction, mut restored): (Vec<usize>, Vec<usize>) = Default::default();
+    let (mut had_constant, mut others_before): (Vec<usize>, usize) = Default::default();
     loop {
         relinearise(study, judged, false);
+        if study.remember(&judged.named.fit) {
+            relinearise(study, judged, false);
+        }
         restore(study, judged, std::mem::take(&mut harmful_friction));
+        had_constant.extend(judged.named.set.iter().filter_map(|&c| constant_torques::names(study, c)));
+        let is_other = |&&c: &&usize| !study.candidates[c].hypothesis.spec().is_baseline;
+        let others = judged.named.set.iter().filter(is_other).count();
+        if others < others_before {
+            add_constants(study, judged, &had_constant);
+        }
+        others_before = others;
         torque_constants::name_those_beyond_tolerance(study, judged, &mut constants_tried);
         make_possible(study, judged);
         breakaway::at_reversals(study, judged);

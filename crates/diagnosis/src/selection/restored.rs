@@ -1,5 +1,8 @@
 //! Effects that return to the final fit after what removed them is gone.
 
+use effects::sensor::TORQUE_OFFSET;
+
+use crate::search::problem::Selection;
 use crate::search::study::{Claim, Study};
 use crate::selection::judge::{self, Judged};
 
@@ -22,6 +25,33 @@ pub fn restore(study: &mut Study, judged: &mut Judged, friction: Vec<usize>) {
         study.note("likely again beside another background", &judged.named, &next);
         judged.members = judge::describe(&problem, &next);
         judged.named = next;
+    }
+}
+
+/// Adds constant torques that have the evidence of a name, after another effect was removed that may have stood for them, as a tilted base does.
+/// Joints that `had` one in the final fit are excluded: it was removed for a reason of its own.
+pub fn add_constants(study: &mut Study, judged: &mut Judged, had: &[usize]) {
+    let products = study.training_products();
+    let problem = study.problem(&products);
+    let before = judged.named.clone();
+    let is_constant = |c: &usize| study.candidates[*c].hypothesis.is(&TORQUE_OFFSET) && study.always_acts(*c);
+    let is_free = |c: &usize, named: &Selection| {
+        let joint = study.candidates[*c].joint;
+        joint.is_some_and(|joint| !had.contains(&joint)) && !named.set.iter().any(|&other| problem.exclude(*c, other))
+    };
+    let constants: Vec<usize> = study.allowed().into_iter().filter(is_constant).collect();
+    loop {
+        let named = &judged.named;
+        let with = |&c: &usize| problem.choose([&named.set[..], &[c]].concat(), &named.fit.weights);
+        let next = constants.iter().filter(|c| !named.set.contains(c) && is_free(c, named)).map(with);
+        match next.min_by(|a, b| a.score.total_cmp(&b.score)) {
+            Some(best) if best.score < named.score - study.thresholds.least_evidence => judged.named = best,
+            _ => break,
+        }
+    }
+    if judged.named.set.len() > before.set.len() {
+        study.note("another effect that stood for it is dropped", &before, &judged.named);
+        judged.members = judge::describe(&problem, &judged.named);
     }
 }
 

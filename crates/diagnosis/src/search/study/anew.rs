@@ -350,6 +350,7 @@ impl Study {
     /// Evaluates everything about the nominal arm again, for another search.
     pub fn restart(&mut self) {
         self.moving = Moving::Steadily;
+        self.forget();
         self.exchanged.clear();
         self.strengths =
             PriorStrengths { least: self.strengths.least.clone(), ..self.stated.first(self.data.arm.dof()) };

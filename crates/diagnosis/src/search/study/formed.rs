@@ -69,7 +69,7 @@ impl Study {
             return products;
         }
         // They are formed without the lock, so that no thread waits, and are the same from every thread.
-        let bare = self.bare(held_out);
+        let bare = self.bare(held_out).remembering(&self.memory);
         let products = bare.with_background(self.prior.at(strengths));
         self.stored(|list| {
             if list.with_background.len() == KEPT {
@@ -94,6 +94,11 @@ impl Study {
             list.is_whole[place] = true;
         });
         products
+    }
+
+    /// Forgets the products with a background, after what the rows are worth has changed.
+    pub(super) fn forget_backgrounds(&self) {
+        self.stored(|list| list.with_background.clear());
     }
 
     fn stored<T>(&self, with: impl FnOnce(&mut List) -> T) -> T {
